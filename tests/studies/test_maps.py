@@ -150,7 +150,7 @@ def test_uncertain_cells_are_hatched_and_in_the_legend() -> None:
     ax = found.plot()
     (mesh,) = (each for each in ax.collections if each.get_array().count())
     assert mesh.get_hatch() == "////"
-    marks = [patch.get_hatch() for text, patch in colors_of(ax).items() if "not certain" in text]
+    marks = [patch.get_hatch() for text, patch in colors_of(ax).items() if "uncertain" in text]
     assert marks == ["////"]
     plt.close("all")
 

@@ -122,7 +122,7 @@ def draw_forces(
     color : str
         Colour of the arrows.
     width : float
-    [-] Width of their shafts, as a fraction of the width of the Axes.
+        [-] Width of their shafts, as a fraction of the width of the Axes.
     where : str
         Text added in the legend, to distinguish them from other arrows.
 

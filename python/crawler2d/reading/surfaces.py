@@ -86,7 +86,7 @@ def surfaces_of(tree: Tree) -> Surfaces:
 
     - the same body has wheels on the same side, at most one for each drum: sprockets;
     - or nothing on that body turns or moves, and there are at least two drums: on the chassis the
-    lowest of all shapes, on a flipper with one on its pivot.
+      lowest of all shapes, on a flipper with one on its pivot.
     """
     links = moved_links(tree)
     moved = frozenset(

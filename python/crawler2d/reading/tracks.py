@@ -151,7 +151,7 @@ def wheels_of(
     pairs : list of Pair
         The wheels, from the rear to the front.
     base : Base
-    The frame of their carrier.
+        The frame of their carrier.
     view : SideView
         The side view.
     path : str

@@ -172,8 +172,8 @@ fn forces_that_balance_are_certified_and_others_not() {
     assert!(!found.certified && found.imbalance.is_some_and(|i| i > 0.1));
 }
 
-/// Two posts behind the centre of mass, 0.15 and 0.1 m: the one in front pushes with three weights, the other has to pull
-/// with two; friction of two places at one height has no lever.
+/// Two posts behind the centre of mass, 0.15 and 0.1 m: the one in front pushes with three weights, the other has to
+/// pull with two; friction of two places at one height has no lever.
 #[test]
 fn a_contact_that_would_have_to_pull_is_named_with_its_force() {
     let stage = Stage::new();
@@ -192,7 +192,7 @@ fn a_contact_that_would_have_to_pull_is_named_with_its_force() {
         panic!("one pulls: {:?}", found.pulls)
     };
     assert_eq!((pull.body, pull.point.x), (0, -0.15));
-    // A residual within the tolerance spares some of it, by the lever between the posts.
+    // A residual within the tolerance reduces it, by the lever between the posts.
     let weights = pull.force / stage.weight();
     assert!((weights - 2.0).abs() < 0.05, "{weights}");
 }
@@ -207,7 +207,7 @@ fn a_braked_robot_on_a_slope_holds_from_the_friction_of_the_angle_on() {
     for (share, holds) in [(1.01, true), (0.99, false)] {
         // Both tracks are one drive here.
         stage.model.motor.force = share * needed / stage.model.motors as f64;
-        // What a residual of a millionth spares is less than what the halvings leave.
+        // The effect of a residual of a millionth is less than the error of the bisections.
         let found = balance::balance(&stage.scene(), &stance, 1e-6).expect("there is a weight");
         assert_eq!(found.holds(), holds);
         let Some([from, to]) = found.holds_between else {
@@ -305,7 +305,7 @@ fn ground_under_the_sprocket_of_an_arm_does_not_turn_it() {
     }
 }
 
-/// Both tracks are one drive here. A motor is stalled if it stands, up to the creep of what sticks, and gives its limit.
+/// Both tracks are one drive here. A motor is stalled if it stands, up to the creep of sticking contacts, at its limit.
 #[test]
 fn a_motor_that_stands_at_its_limit_is_stalled() {
     let stage = Stage::new();
@@ -355,7 +355,7 @@ fn of_two_motors_with_ground_one_that_stands_is_half() {
     }
 }
 
-/// Driving forwards, what is fixed to a wheel goes rearwards under its axle: it digs into ground whose normal leans forwards.
+/// Driving forwards, points on a wheel move rearwards under its axle, and dig into ground whose normal leans forwards.
 #[test]
 fn a_tooth_that_would_dig_into_ground_in_the_track_is_a_flank() {
     let stage = Stage::on(Track::Line(LineOfWheels {
@@ -384,7 +384,7 @@ fn a_tooth_that_would_dig_into_ground_in_the_track_is_a_flank() {
         for bearing in &mut stance.bearings {
             let axle = stance.position - Vector::new(HALF, 0.0);
             let spoke = axle - bearing.contact.point;
-            // By so much of the speed of the drive it digs in.
+            // The fraction of the drive's speed at which it digs in.
             let sine = lean * radius / spoke.length();
             bearing.contact.part = rear.expect("it has a rear wheel");
             bearing.contact.normal = Rotation::new(-libm::asin(sine)) * spoke.normalize();
@@ -453,7 +453,7 @@ fn ground_within_a_single_smooth_surface_is_not_inside_the_track() {
     assert!(found.contacts.iter().all(|contact| !contact.in_pocket));
 }
 
-/// What counts is how much of the weight a contact lifts, by its normal force and by its friction.
+/// A contact counts by the part of the weight that it lifts, by its normal force and by its friction.
 #[test]
 fn the_belly_bears_its_share_of_what_is_lifted() {
     let stage = Stage::new();
@@ -472,7 +472,7 @@ fn the_belly_bears_its_share_of_what_is_lifted() {
     assert_eq!(found.outcome == Outcome::HungUp, found.belly_share >= least);
 }
 
-/// Behind a gear that locks itself a motor of no force holds what stands; what moves it holds back, and does not push on.
+/// Behind a self-locking gear, a motor without force holds what stands; it brakes what moves, and does not push it.
 #[test]
 fn a_lock_holds_what_stands_and_holds_back_what_moves() {
     let mut stage = Stage::new();

@@ -113,8 +113,7 @@ fn outwards(
 }
 
 impl Facing {
-    /// Whether a point above it touches it, where `foot` is the nearest point on the line or circle in the direction
-    /// `normal`.
+    /// Whether a point of the extended line or circle, `foot`, from which `normal` points out of the ground, is on it.
     pub(super) fn is_touched(&self, foot: Vector, normal: Vector, tolerance: f64) -> bool {
         match self {
             Self::Face { ends: [a, b], .. } => {

@@ -1,4 +1,4 @@
-//! A robot of a few surfaces over a few pieces of ground, drawn so that they touch in a pose that is known.
+//! A robot with a few surfaces over a few pieces of ground, drawn so that they touch in a known pose.
 #![allow(clippy::float_cmp)] // what is not changed is equal
 
 mod loads;
@@ -32,7 +32,7 @@ fn posture(draw: &mut Draw) -> Posture {
     }
 }
 
-/// What touches what: a disc a face, a disc a corner, or a straight run a corner.
+/// Kinds of contacts: a disc on a face, a disc on a corner, or a straight run on a corner.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Pair {
     OnFace,
@@ -111,7 +111,7 @@ fn place(shape: Facing, friction: f64) -> Place {
     }
 }
 
-/// A robot of these surfaces, with its centre of mass there, over these pieces of ground.
+/// A robot with these surfaces and centre of mass, over these pieces of ground.
 fn setting(surfaces: Vec<Surface>, places: Vec<Place>, center_of_mass: Vector) -> Setting {
     let layout = Layout {
         center_of_mass,

@@ -1,4 +1,4 @@
-//! However a robot is taken apart, its mass, centre of mass and moment of inertia are those of the scenario.
+//! However a robot is divided, its mass, centre of mass and moment of inertia are those of the scenario.
 
 mod arms_and_lanes;
 mod chains;
@@ -14,7 +14,7 @@ use crate::scenario::{
 };
 use crate::terrain::Ground;
 
-/// Bodies that add up.
+/// A sum of bodies.
 #[derive(Default)]
 struct Sum {
     mass: f64,
@@ -99,7 +99,7 @@ fn on_arms(angle: f64) -> Vec<Robot> {
     robots
 }
 
-/// With each track on a ground of its own.
+/// With each track on its own ground.
 fn on_two_lanes(robot: &Robot) -> Model {
     let text = include_str!("../../../tests/scenarios/engineer_belt_step.json");
     let mut ground = Ground::new(&scenario(text).terrain, robot.gauge).expect("it is ground");
@@ -121,7 +121,7 @@ fn model(robot: &Robot) -> Model {
     Model::new(robot).expect("it is valid")
 }
 
-/// [N] What all motors of its tracks can give.
+/// [N] Largest force of all motors of its tracks.
 fn force(model: &Model) -> f64 {
     model.motor.force * model.motors as f64
 }
@@ -291,7 +291,7 @@ fn a_track_runs_round_wheels_that_stand_for_one() {
     }
 }
 
-/// Both tracks feel at the belt what one sprocket feels, times two, over the radius for each of torque and rate.
+/// Values at the belt are those of one sprocket, times two, divided by the radius once for torque and once for rate.
 #[test]
 fn motors_are_seen_from_the_belt() {
     let mut robot = on_all_tracks().remove(0);
@@ -333,7 +333,7 @@ fn motors_are_seen_from_the_belt() {
     );
 }
 
-/// The lower run of its belt joins wheels that are no neighbours in the list, and covers one that hangs higher.
+/// The lower run of its belt joins wheels that are not neighbours in the list, and covers a higher one.
 #[test]
 fn a_closed_track_starts_on_what_is_highest_below_its_hull() {
     let mut scenario = scenario(include_str!(

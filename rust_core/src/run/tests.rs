@@ -1,5 +1,5 @@
-//! Copies of a robot on another scale end in the same place after as many steps, if the lengths, times and speeds of the method
-//! are scaled along: no others decide anything there.
+//! Copies of a robot on another scale end at the same place after the same number of steps, if the lengths, times and
+//! speeds of the method are scaled, too: no others matter.
 
 use serde_json::{Map, Value};
 
@@ -15,8 +15,8 @@ const LENGTH: Unit = [1, 0, 0];
 const TIME: Unit = [0, 1, 0];
 const TORQUE: Unit = [2, -2, 1];
 
-/// Factors of length, time and mass. Powers of two change no digit, and those of length are the squares of those of time, so
-/// that gravity is the same.
+/// Factors of length, time and mass. Powers of two change no digit, and those of length are the squares of those of
+/// time, so that gravity is the same.
 const SCALES: [[f64; 3]; 4] = [
     [1.0 / 16.0, 0.25, 1.0],
     [0.25, 0.5, 1.0 / 64.0],
@@ -27,7 +27,7 @@ const SCALES: [[f64; 3]; 4] = [
 /// The unit of a field of scenarios, from the package's list of them.
 fn unit(room: &str, field: &str) -> Unit {
     match (room, field) {
-        // The criteria have a share of the torque by the same name.
+        // The criteria have a fraction of the torque with the same name.
         ("flippers", "torque_limit") => return TORQUE,
         (_, "schema") => return NUMBER,
         _ => (),
@@ -107,7 +107,7 @@ fn run(scenario: &Scenario, [length, time, _]: [f64; 3]) -> Run {
     })
 }
 
-/// Bits of where a run ends and of what it took, on the scale of the original.
+/// Bits of the end of a run and of its counts, on the scale of the original.
 fn bits(run: &Run, scale: [f64; 3]) -> Vec<u64> {
     let m = &run.metrics;
     let values = [
@@ -135,7 +135,7 @@ fn shared(name: &str, rotor_inertia: f64) -> Scenario {
     scenario
 }
 
-/// Not chains: their steps are not cut at a strike, and the elimination of a ring was not looked at for this.
+/// No chains: their steps are not cut at a strike, and the elimination of a ring was not checked for this.
 #[test]
 fn copies_on_other_scales_end_with_the_same_bits() {
     for (name, rotor_inertia) in [

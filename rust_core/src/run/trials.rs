@@ -252,8 +252,8 @@ impl<'a> TrialSeries<'a> {
         self.attempt(change.name(), (most, duration), &|stop| start(stop, change))
     }
 
-    /// Tries a change for a time [s] from as many starts as it takes to decide, at most `most`, and only if the robot
-    /// rattles; returns the first trial that ended like most of them, and its index.
+    /// Tries a change for a time [s] from as many starts as it takes to decide: at most `most` if the robot rattles,
+    /// else one. Returns the first trial that ended like most of them, and its index.
     fn attempt(
         &mut self,
         name: &'static str,

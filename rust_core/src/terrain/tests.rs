@@ -125,7 +125,7 @@ fn an_obstacle_begins_with_the_barrier_of_its_field() {
     );
 }
 
-/// The corners that the belly meets between two lanes are no obstacle of their own.
+/// The corners of the belly's ground between two lanes are not a separate obstacle.
 #[test]
 fn two_lanes_of_one_shape_begin_where_that_does() {
     let lane = |friction: f64| Terrain::Points {

@@ -33,7 +33,7 @@ __all__ = [
 
 _HERE = "crawler2d.pictures.page"
 
-# What draws a run from the side; each part uses only those before it.
+# Scripts that draw a run from the side; each uses only those before it.
 _SCENE = (
     "data.js",
     "camera.js",
@@ -76,7 +76,7 @@ def read_part(name: str, package: str = _HERE) -> str:
 
 
 def scene_script(*parts: str) -> str:
-    """Join what draws a run from the side and what a page does with that into one script."""
+    """Join the scripts that draw a run from the side and those of a page into one."""
     return '"use strict";\n(() => {\n' + "\n".join([*map(read_part, _SCENE), *parts]) + "})();\n"
 
 
@@ -96,15 +96,15 @@ def fill_page(
     file : str
         The body, in `package`.
     style : str
-        What the page has besides the style of all pages.
+        Additional style of the page.
     script : str
-        What it runs; "" allows none.
+        Script of the page; "" allows none.
     package : str
-        Where the body is.
+        Package of the body.
     script_sources : str
-        What its security policy allows besides that script.
+        Script sources that its security policy allows in addition.
     **values : object
-        For its placeholders, as HTML; `title` is that of the head.
+        Values of its placeholders, as HTML; `title` is that of the head.
     """
     style = read_part("page.css") + style
     # One pass, so that a robot's name stays text even if it looks like a placeholder.
@@ -120,18 +120,18 @@ def fill_page(
 
 
 def _policy(text: str) -> str:
-    """Name a script, or a style, for the security policy of a page."""
+    """Return the hash of a script or style for the security policy of a page."""
     digest = hashlib.sha256(text.encode()).digest()
     return f"'sha256-{base64.b64encode(digest).decode('ascii')}'"
 
 
 def as_json(data: Any) -> str:
-    """Write data as JSON in which nothing means anything in HTML."""
+    """Write data as JSON without characters that have a meaning in HTML."""
     return json.dumps(data, allow_nan=False, separators=(",", ":")).translate(_MARKUP)
 
 
 def main_figures(run: Record) -> list[tuple[str, str]]:
-    """Choose the metrics of most interest: label, and value with unit."""
+    """Return the main metrics: label, and value with unit."""
     chosen = []
     for name, label, scale, unit, digits in _FIGURES:
         value = run.metrics.get(name, 0.0)
@@ -192,7 +192,7 @@ def _tooltip(meaning: str) -> str:
 
 
 def _trials(run: Record) -> str:
-    """List what was tried as buttons that show where the robot ended."""
+    """List the trials as buttons that show where the robot ended."""
     tried = ghosts(run)
     if not tried:
         return ""

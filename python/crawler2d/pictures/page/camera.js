@@ -1,4 +1,4 @@
-// From metres to pixels: which part of the ground is seen, and how large.
+// From metres to pixels: the visible part of the ground, and its scale.
 
 class Camera {
   constructor(extent, robotLength) {
@@ -21,7 +21,7 @@ class Camera {
     this.touched = false;
     if (this.follows) {
       this.scale = Math.min(this.width / (2.4 * this.robotLength), this.height / (1.3 * this.robotLength));
-      // More room ahead than behind, more sky than ground.
+      // More space ahead than behind, more sky than ground.
       this.x = 0.15 * this.robotLength;
       this.y = 0.12 * this.robotLength;
       return;
@@ -57,7 +57,7 @@ class Camera {
     ];
   }
 
-  // Shows at least this much round two points, and no less than now.
+  // Shows at least a margin round two points, and no less than before.
   include([x, y], [otherX, otherY]) {
     const reach = this.robotLength;
     const sees = (px, py) => {

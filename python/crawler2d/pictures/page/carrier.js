@@ -40,7 +40,7 @@ class Carrier {
     const travel = this.circuit && moment.value(this.circuit.travel);
     if (this.circuit) this.circuit.drawMarks(ctx, colors, pixel, travel, this.inside[0].reach);
     each(this.hulls, ({ look, path }) => {
-      // What shoes slide on is drawn faintly behind them.
+      // The guide of shoes is drawn faintly behind them.
       const isHint = look === "guide";
       ctx.strokeStyle = isHint ? colors.chassis : colors.track;
       ctx.lineWidth = (isHint ? 1 : 2) * pixel;
@@ -100,7 +100,7 @@ class Body {
     }
   }
 
-  // The spoke shows how far the wheel has turned.
+  // The spoke shows the angle of the wheel.
   drawRound(ctx, color, fill, pixel) {
     fillAndStroke(ctx, this.path, fill, color, 1.4 * pixel);
     ctx.fillStyle = color;

@@ -1,8 +1,8 @@
 // The recorded run: frames, contacts and events, and the state at an instant between two frames.
 
-// Little-endian, as Python wrote it; every machine that shows the page is little-endian, too.
+// Little-endian, as written by Python; every machine that shows the page is little-endian, too.
 function unpack(column) {
-  if (ArrayBuffer.isView(column)) return column; // as the explorer has it from the core
+  if (ArrayBuffer.isView(column)) return column; // from the core of the explorer
   const bytes = Uint8Array.from(atob(column.data), (letter) => letter.charCodeAt(0));
   if (column.bits === 32) return new Float32Array(bytes.buffer);
   const counts = column.bits === 16 ? new Uint16Array(bytes.buffer) : bytes;
@@ -72,7 +72,7 @@ class Recording {
     const span = this.time[frame] - this.time[before];
     const share = span > 0 ? Math.min(1, Math.max(0, (time - this.time[before]) / span)) : 1;
     const mixed = (values) => values[before] + share * (values[frame] - values[before]);
-    // A quantity that does not change is stored as a plain number.
+    // A constant quantity is stored as a plain number.
     const value = (entry) => (entry.column === undefined ? entry : mixed(this.columns[entry.column]));
     return {
       time, frame, value,

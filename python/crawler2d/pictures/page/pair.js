@@ -1,10 +1,10 @@
-// Runs side by side, on one clock, that show the same place to one scale.
+// Runs side by side, at the same time, place and scale.
 
 const player = new Player(draw);
 let scenes = [];
 let colors = readColors();
 
-// A run that is over stays as it ended.
+// After its end, a run is shown as it ended.
 function draw(time) {
   for (const scene of scenes) scene.draw(Math.min(time, scene.end), colors);
   element("scrub").value = String(time);
@@ -12,8 +12,8 @@ function draw(time) {
   element("clock").textContent = `${time.toFixed(1)} / ${player.end.toFixed(1)} s`;
 }
 
-// Both pictures show the same place, in which the second robot gets past the goal and is over; arrows
-// have one length for one force.
+// Both pictures show the same place, in which the second robot gets past the goal; arrows have the
+// same scale.
 function scenesOf(runs, canvases) {
   const [{ robot: { length }, ground: { goal } }] = runs;
   const past = goal === null ? Infinity : goal + length;
@@ -44,12 +44,12 @@ function resize() {
   player.changed();
 }
 
-// They play, or for those who want no motion stand as they ended.
+// They play, or show the end for users who prefer no motion.
 function show(both) {
   scenes = both;
   player.time = player.end = Math.max(...scenes.map(({ end }) => end));
   element("scrub").max = String(player.end);
-  // Slow robots are shown in a quarter of a minute, too.
+  // Slow robots are also shown in a quarter of a minute.
   const speeds = [...element("speed").options].map(({ value }) => Number(value));
   element("speed").value = String(speeds.find((speed) => speed >= 1 && player.end / speed < 15) ?? 10);
   player.play(!matchMedia("(prefers-reduced-motion: reduce)").matches);

@@ -1,4 +1,4 @@
-"""Runs side by side in a page: what they are drawn from, and where."""
+"""Runs side by side in a page: their data and layout."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ if TYPE_CHECKING:
 __all__ = ["INTERVAL", "pair_data", "pair_figure", "pair_parts", "pair_script", "pair_style"]
 
 INTERVAL = 0.04
-"""[s] Between samples: 25 pictures a second, a quarter of the usual."""
+"""[s] Time between samples: 25 pictures a second, a quarter of the usual."""
 
 _MOST = 300
-"""Samples of a run in the page: those of slow and of long runs are farther apart."""
+"""Number of samples of a run in the page; those of slow and long runs are farther apart."""
 
 _LOOKS = {"seized": "bad", "cleared": "good"}
 
@@ -40,7 +40,7 @@ def pair_parts() -> dict[str, str]:
 
 
 def pair_figure(name: str, run: Record) -> str:
-    """Write the place of the picture of a run, with what it is and how it ended."""
+    """Write the element for the picture of a run, with its name and outcome."""
     if run.error is not None:
         return f"<p><b>{escape(name)}</b> no result: {escape(str(run.error))}</p>"
     end = run.ending.replace("_", " ")
@@ -53,6 +53,6 @@ def pair_figure(name: str, run: Record) -> str:
 
 
 def pair_data(runs: Sequence[Record], name: str) -> str:
-    """Write what is drawn of runs, as inert text with this id."""
+    """Write the data of runs as inert text with this id."""
     shown = [recording(run, most=_MOST) for run in runs if run.error is None]
     return f'<script type="application/json" id="{name}">{as_json(shown)}</script>'

@@ -1,9 +1,9 @@
-// The time that a page shows, and the button that lets it pass.
+// The time that a page shows, and the play button.
 
 const element = (id) => document.getElementById(id);
 
 class Player {
-  // `draw` shows an instant; `snap` says at which one a pause stops.
+  // `draw` shows an instant; `snap` returns the instant at which a pause stops.
   constructor(draw, snap = (time) => time) {
     Object.assign(this, { draw, snap, time: 0, begin: 0, end: 0, playing: false, queued: false });
     element("play").addEventListener("click", () => this.play(!this.playing));
@@ -45,7 +45,7 @@ class Player {
   }
 }
 
-// Gives a canvas the pixels of its place, and tells what draws on it.
+// Gives a canvas the pixels of its size on the page, and passes that size to what draws on it.
 function fit(canvas, part) {
   const { clientWidth, clientHeight } = canvas;
   canvas.width = Math.max(1, Math.round(clientWidth * (window.devicePixelRatio || 1)));

@@ -98,7 +98,7 @@ def _frames(run: Record, kept: NDArray[np.int64]) -> dict[str, Any]:
 
 
 def _contacts(run: Record, kept: NDArray[np.int64]) -> dict[str, Any]:
-    """Collect the contacts of the kept samples; `counts` holds how many each frame has."""
+    """Collect the contacts of the kept samples; `counts` has their number in each frame."""
     table = run.contacts
     frames = np.searchsorted(run.time, table["time"])
     rows = np.flatnonzero(np.isin(frames, kept))
@@ -171,7 +171,7 @@ class _Robot:
         self.columns, self.outlines = _UniqueArrays(), _UniqueArrays()
 
     def data(self) -> dict[str, Any]:
-        """Collect the carriers of tracks, and all that is drawn on each.
+        """Collect the carriers of tracks, and everything that is drawn on each.
 
         Returns
         -------
@@ -209,7 +209,7 @@ class _Robot:
         }
 
     def _bodies(self, carrier: Carrier) -> list[dict[str, Any]]:
-        """Collect all bodies but the grousers of a belt; the pieces of a shoe are one body."""
+        """Collect all bodies except the grousers of a belt; the pieces of a shoe are one body."""
         bodies: list[dict[str, Any]] = []
         shoes: dict[int, dict[str, Any]] = {}
         riders = set() if carrier.circuit is None else set(carrier.circuit.grousers.tolist())
@@ -230,7 +230,7 @@ class _Robot:
             }
             if self.scene.kinds[row] == BodyKind.SHOE:
                 shoes[shoe] = body
-                # A plate reaches from pin to pin and is as thick inwards of the pins as outwards.
+                # A plate reaches from pin to pin, and is equally thick on both sides of the pins.
                 x, y = corners.min(axis=0).tolist()
                 body |= {"pin": x, "pin_radius": -0.5 * y}
             bodies.append(body)
@@ -252,7 +252,7 @@ class _Robot:
         }
 
     def _belts(self, carrier: Carrier) -> dict[str, Any]:
-        """Collect the envelopes of a carrier; a closed track has none: nothing gets inside."""
+        """Collect the envelopes of a carrier; a closed track has none, as nothing gets inside."""
         if carrier.closed:
             return {"envelope": None, "inner": None, "root": None}
         envelope, root = carrier.envelope, carrier.root_envelope
@@ -263,7 +263,7 @@ class _Robot:
         }
 
     def _pose(self, poses: NDArray[np.float64], carrier: Carrier, reach: float) -> dict[str, Any]:
-        """[m, m, rad] Poses of a body with this reach [m], relative to what carries it."""
+        """[m, m, rad] Poses of a body with this reach [m], relative to its carrier."""
         x, y, angle = relative(poses, carrier.poses)[self.kept].T
         turn = _RIM / reach if reach > 0.0 else np.inf
         return {

@@ -27,7 +27,7 @@ function tell(time) {
   element("readout").textContent =
     `x ${shown(moment.x, 3)} m · y ${shown(moment.y, 3)} m · ${shown(degrees, 1)}° · ` +
     `track ${shown(moment.speed, 2)} m/s`;
-  // For a widget, which is the only one to listen.
+  // For a widget, which is the only listener.
   if (embedded) window.parent.postMessage({ crawler2d: time }, "*");
 }
 
@@ -47,7 +47,7 @@ function reset() {
   changed();
 }
 
-// Shows where the robot ended in a trial, together with where it stopped; a second press hides it.
+// Shows the end of a trial together with the stop; a second press hides it.
 function showTrial(number) {
   scene.ghost = scene.ghost === number ? null : number;
   for (const button of document.querySelectorAll("[data-trial]")) {

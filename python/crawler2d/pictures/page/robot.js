@@ -33,7 +33,7 @@ class Robot {
     ctx.restore();
   }
 
-  // The robot at the end of a trial: outlines only, and a belt round them where the trial closed the track.
+  // The robot at the end of a trial: outlines only, with a belt round them if the trial closed the track.
   drawGhost(ctx, colors, pixel, moment, { frames, belt }) {
     this.carriers.forEach((carrier, k) => {
       const [x, y, angle] = frames[k];

@@ -17,7 +17,7 @@ class Scene {
       (i % 2 ? recording.y : recording.x)[i >> 1]), false);
   }
 
-  // Whether this run has anything of the kind to draw.
+  // Whether this run has anything of this kind to draw.
   has(what) {
     if (what === "envelope") return this.robot.carriers.some((carrier) => carrier.envelope);
     const { normal_force: normal, friction_force: friction, surface_speed: speed } =
@@ -72,7 +72,7 @@ class Scene {
     ctx.restore();
   }
 
-  // Of two lanes the far one shows through behind the near one.
+  // If there are two lanes, the far one is visible through the near one.
   drawGround(ctx, colors, pixel, floor) {
     for (const lane of this.lanes) {
       const near = lane === this.lanes.at(-1);

@@ -1,4 +1,4 @@
-// The page of a run as a widget of a notebook, in a frame; another run gets a frame of its own.
+// The page of a run as a widget for notebooks, in a frame; another run gets its own frame.
 
 function render({ model, el }) {
   const stack = document.createElement("div");
@@ -12,7 +12,7 @@ function render({ model, el }) {
     frame.sandbox = "allow-scripts"; // the page can reach neither the notebook nor the network
     frame.style.cssText = "position: absolute; inset: 0; width: 100%; height: 100%; border: 0; visibility: hidden";
     frame.addEventListener("load", () => {
-      // Until now the one before it stayed, so that nothing flickers.
+      // The previous one stayed until now, to avoid flicker.
       while (frame.previousSibling) frame.previousSibling.remove();
       frame.style.visibility = "visible";
       frame.loaded = true;
@@ -22,7 +22,7 @@ function render({ model, el }) {
     stack.append(frame);
   };
 
-  // One at a time: while a slider moves, pages come faster than they load.
+  // One at a time: while a slider moves, pages arrive faster than they load.
   const change = () => {
     if (stack.lastElementChild.loaded) show();
   };

@@ -225,7 +225,7 @@ fn the_room_above_a_roof_is_no_more_than_its_distance_and_all_of_it_over_a_level
     }
 }
 
-/// Also where a side would bear on it after a small turn only.
+/// Also if a side would bear on it only after a small turn.
 #[test]
 fn no_corner_that_bears_is_in_a_stretch_that_is_left_out() {
     let lane = saw(200);

@@ -357,7 +357,7 @@ fn every_piece_is_found_with_its_depth_and_its_bodies() {
         let model = &models[number % models.len()];
         let ground = Ground::new(&terrain(number % 6, &mut draw), 0.2).expect("a ground");
         let x = draw.between(-0.3, 0.5);
-        // From buried to clear, most of them straddling an obstacle.
+        // From buried to clear; most of them straddle an obstacle.
         let y = ground.lanes[0].height_under_disc(x, 0.1) + draw.between(-0.08, 0.02);
         let angle = Rotation::new(draw.between(-0.7, 0.7));
         let pose = Pose::from_parts(Vector::new(x, y), angle);

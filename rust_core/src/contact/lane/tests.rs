@@ -155,7 +155,7 @@ fn the_index_finds_what_looking_at_every_piece_finds() {
     println!("seed {SEED}: {poses} poses, {found} touches");
 }
 
-/// What bounds several pieces must not leave out what is at the very end of one.
+/// Bounds of several pieces must include the very end of each.
 #[test]
 fn the_index_finds_a_disc_with_its_centre_below_the_end_of_a_face() {
     let mut draw = Draw(20_270_124);
@@ -267,7 +267,7 @@ fn an_arc_down_to_the_ground_meets_it_along_its_own_tangent() {
 fn a_corner_that_is_pressed_into_a_wall_stays_found() {
     let points = [[-1.0, 0.0], [0.0, 0.0], [0.0, 0.07], [1.0, 0.07]];
     let (_, lane) = rounded(&points, 0.0);
-    // How far grousers of a chain look ahead at rest; 2 kN press one in by more.
+    // Prediction distance for grousers of a chain at rest; 2 kN press one in by more.
     let prediction = 2e-4;
     for depth in [1e-5, 1.9e-4, 2.1e-4, 9e-4] {
         let corner = Vector::new(depth, 0.06);

@@ -1,4 +1,4 @@
-//! Which of several contacts is left.
+//! Which of several contacts remains.
 
 use super::*;
 use crate::geometry::direction;
@@ -119,7 +119,7 @@ fn tip(side: f64, [x, y]: [f64; 2], angles: [f64; 2]) -> Tip {
 #[test]
 fn a_tip_in_a_face_yields_to_a_shorter_way_out_beside_it_if_it_can_take_that() {
     for (place, angles, yields) in [
-        // Down to the right at 45 degrees, the corner leaves its left side, or is farther from it.
+        // Down to the right at 45 degrees, the corner leaves through the left side, or is farther from it.
         ([-0.2, -1.0], [-135.0, -45.0], true),
         ([-2.0, -1.0], [-135.0, -45.0], false),
         // The tip leaves the block through its side, or is too far from that.
@@ -183,7 +183,7 @@ fn lane_of(points: &[[f64; 2]]) -> Lane {
     Lane::new(&profile.expect("it is ground"))
 }
 
-/// A disc of 0.1 m that touches the ground in so many places, a hundredth of a radian apart.
+/// A disc of 0.1 m that touches the ground at a number of places, a hundredth of a radian apart.
 fn touching(count: i32, gap: impl Fn(i32) -> f64) -> (Disc, Vec<Contact>) {
     let disc = Disc {
         center: Vector::new(1.0, 0.1),
@@ -197,7 +197,7 @@ fn touching(count: i32, gap: impl Fn(i32) -> f64) -> (Disc, Vec<Contact>) {
     (disc, contacts.collect())
 }
 
-/// Of contacts with equal gaps, the disc closes those at both ends first.
+/// If contacts have equal gaps, the disc closes those at both ends first.
 #[test]
 fn contacts_of_a_disc_are_thinned_out_where_they_are_many_and_the_ground_is_fine() {
     let zigzag = |i: i32| [0.9 + 5e-4 * f64::from(i), 1e-4 * f64::from(i % 2)];
@@ -221,7 +221,7 @@ fn contacts_of_a_disc_are_thinned_out_where_they_are_many_and_the_ground_is_fine
     }
 }
 
-/// Whichever way the disc goes, if it goes as far as the contacts that are left let it, no other is closed further.
+/// If the disc moves in any direction as far as the remaining contacts allow, no other gap is smaller.
 #[test]
 fn the_contacts_that_are_left_keep_a_disc_out_of_all_the_others() {
     let far = 1e-4;
@@ -273,7 +273,7 @@ fn a_contact_cuts_the_displacements_that_would_close_it() {
     assert!(range.corners.is_empty());
 }
 
-/// In numbers without rounding: else of two ways out that are equally long, each would yield to the other.
+/// In numbers without rounding; otherwise two equally long ways out would yield to each other.
 #[test]
 fn a_way_out_yields_to_a_shorter_one_and_not_to_one_as_long() {
     let lane = block(1.0);

@@ -69,7 +69,7 @@ fn an_arm_bears_no_more_than_its_motor_holds() {
 #[test]
 fn of_two_wheels_on_a_slope_one_may_stand_while_the_other_turns() {
     let (sine, cosine) = libm::sincos(0.3_f64);
-    // A wheel on a motor of its own, whose torque acts back on the chassis.
+    // A wheel on its own motor, whose torque acts back on the chassis.
     let wheel = |drive: usize, lever: f64, slides: f64| {
         let mut on = support(Vector::new(-sine, cosine), [lever, -1.0], 0.5);
         (on.drive, on.tangent.spin_lever, on.slides) = (Some(drive), 1.0, slides);
@@ -84,11 +84,11 @@ fn of_two_wheels_on_a_slope_one_may_stand_while_the_other_turns() {
         held.imbalance().unwrap()
     };
     let imbalance = |slides: [f64; 2], torque: f64| within(slides, [[-torque, torque]; 2]);
-    // The one that turns pushes uphill with the friction of half the weight, and its motor holds as much.
+    // The turning one pushes uphill with the friction of half the weight, which its motor balances.
     let needed = 0.5 * 0.5 * cosine;
     assert!(imbalance([0.0, -1.0], 1.01 * needed) < 1e-8);
     assert!(imbalance([0.0, -1.0], 0.8 * needed) > 0.01);
-    // A gear that locks itself holds the one that stands, but drives no other.
+    // A self-locking gear holds the one that stands, but drives no other.
     let (weak, any) = (0.8 * needed, [f64::NEG_INFINITY, f64::INFINITY]);
     let turns = |most: f64| within([0.0, -1.0], [any, [f64::NEG_INFINITY, most]]);
     assert!(turns(1.01 * needed) < 1e-8);
@@ -112,7 +112,7 @@ fn walls_that_slide_balance_a_block_where_they_are_steeper_than_the_friction_ang
         let friction = libm::tan(0.3);
         let mut block = notch(slope, friction);
         assert!(block.imbalance().unwrap() < 1e-8);
-        // It slips to the right, down one wall and up the other; the friction of both points left.
+        // It slips to the right, down one wall and up the other; the friction of both points to the left.
         for support in &mut block.supports {
             support.slides = 1.0;
         }

@@ -1,4 +1,4 @@
-//! How shoes of a chain move where they bear, and when they pinch the ground.
+//! Motion of shoes of a chain where they bear, and when they pinch the ground.
 
 use super::*;
 
@@ -18,8 +18,8 @@ fn plate(stage: &Stage, shoe: usize) -> usize {
     plate.expect("each shoe has one")
 }
 
-/// Driving forwards shoes run rearwards below and turn with the front end; a contact that another shoe has by now moves as
-/// that one does.
+/// Driving forwards, shoes run rearwards below and turn with the front end; a contact that now belongs to another shoe
+/// moves like that one.
 #[test]
 fn a_shoe_moves_as_the_chain_runs_where_its_contact_is() {
     let stage = on_a_chain();

@@ -43,7 +43,7 @@ fn a_hull_stands_on_the_run_below_its_centre_of_mass() {
         (angle - (0.1_f64 / 0.5).asin()).abs() < 1e-12,
         "{angle} rad"
     );
-    // Of a trapezoid with raised ends the middle run is level, and the others are where the weight is beyond it.
+    // The middle run of a trapezoid with raised ends is level; the others count if the weight is beyond it.
     let raised = [(-0.5, 0.1), (-0.2, 0.0), (0.2, 0.0), (0.5, 0.1)];
     let raised = Envelope::new(&raised.map(|(x, y)| disc(x, y, 0.1)));
     let slope = (0.1_f64 / 0.3).atan();
@@ -142,7 +142,7 @@ fn distances_along_the_belt_come_back_as_distances() {
     }
 }
 
-/// Whichever way it lies: rounding may turn the place to just before the arc that begins there.
+/// In any orientation: rounding may move the position to just before the arc that begins there.
 #[test]
 fn a_stretch_begins_at_its_start() {
     for i in 0..2000 {

@@ -1,4 +1,4 @@
-//! What cells show of a robot before a step, beside what single poses in them show.
+//! Results for cells of a robot at a step, compared with single poses in them.
 
 mod enclosures;
 mod family;
@@ -19,7 +19,7 @@ use crate::robot::Model;
 use crate::scenario::{LineOfWheels, Scenario, ScenarioError, Surface, Terrain, Track, Wheel};
 use crate::terrain::Ground;
 
-/// [m] Least and greatest height of the step, and both frictions.
+/// [m] Smallest and largest height of the step, and both values of friction.
 const HEIGHTS: [f64; 2] = [0.07, 0.09];
 const FRICTIONS: [f64; 2] = [0.5, 0.9];
 /// [rad] Largest angle of the chassis.
@@ -56,7 +56,7 @@ fn family(scenarios: &[Scenario]) -> Result<Family, ScenarioError> {
     Family::new(&all, &names, true, MOST_ANGLE)
 }
 
-/// The scenarios at the least values, at the most of each alone, of both, and half way.
+/// The scenarios with the smallest values, the largest of each alone, of both, and the middle.
 fn members() -> [Scenario; 5] {
     let ([low, high], [smooth, rough]) = (HEIGHTS, FRICTIONS);
     [
@@ -83,7 +83,7 @@ fn cell_at(posture: &Posture, shares: &Shares) -> Cell {
     cell
 }
 
-/// The cell that reaches this far on either side of another's middle, with pose and shares anywhere in it.
+/// A cell of this size about the middle of another one.
 fn cell_round(draw: &mut Draw, inside: &Cell, half: f64) -> Cell {
     let mut cell = *inside;
     for number in 0..NUMBERS {
@@ -94,7 +94,7 @@ fn cell_round(draw: &mut Draw, inside: &Cell, half: f64) -> Cell {
     cell
 }
 
-/// Pose and shares somewhere in a cell.
+/// A random pose and random fractions in a cell.
 fn anywhere(draw: &mut Draw, cell: &Cell) -> Cell {
     let mut point = *cell;
     for number in 0..NUMBERS {

@@ -1,4 +1,4 @@
-//! Forces that carry the weight, by levers.
+//! Forces that carry the weight, checked by levers.
 
 use super::*;
 use crate::jams::forces::{Push, for_each_choice};
@@ -9,7 +9,7 @@ fn choices(wrenches: &[[f64; 3]]) -> Vec<Vec<(usize, f64)>> {
     found
 }
 
-/// What a choice leaves of the weight.
+/// The part of the weight that a choice does not carry.
 fn left(wrenches: &[[f64; 3]], choice: &[(usize, f64)]) -> f64 {
     let sum = |axis: usize| {
         choice
@@ -21,7 +21,7 @@ fn left(wrenches: &[[f64; 3]], choice: &[(usize, f64)]) -> f64 {
     off.iter().fold(0.0, |most: f64, x| most.max(x.abs()))
 }
 
-/// Two forces carry the weight if their lines and its meet in a point.
+/// Two forces carry the weight if the three lines meet in a point.
 #[test]
 fn one_force_or_two_carry_only_what_they_balance() {
     assert_eq!(choices(&[[0.0, 2.0, 0.0]]), [[(0, 0.5)]]);
@@ -33,7 +33,7 @@ fn one_force_or_two_carry_only_what_they_balance() {
     ] {
         assert!(choices(&[off]).is_empty(), "{off:?}");
     }
-    // Three quarters of the first and one of the second leave no force along the ground, and half the weight more to bear.
+    // Three quarters of the first and one of the second cancel along the ground, and leave half the weight.
     let both = |moment: f64| [[1.0, 0.5, 0.2], [-3.0, 2.5, moment]];
     let [choice] = &choices(&both(-0.6))[..] else {
         panic!("one choice carries it");
@@ -41,7 +41,7 @@ fn one_force_or_two_carry_only_what_they_balance() {
     assert!((choice[0].1 - 0.75).abs() < 1e-15 && (choice[1].1 - 0.25).abs() < 1e-15);
     assert!(left(&both(-0.6), choice) < 1e-15);
     assert!(choices(&both(-0.61)).is_empty() && choices(&both(-0.59)).is_empty());
-    // With a third that bears nothing they are a choice of three, within rounding.
+    // With a third that bears nothing, they are a choice of three, within rounding.
     let third = [1.0, 0.7, 3.0];
     let [a, b] = both(-0.6);
     let [choice] = &choices(&[a, b, third])[..] else {
@@ -63,7 +63,7 @@ fn what_carries_the_weight_in_all_carries_it_by_three() {
             .map(|_| std::array::from_fn(|_| draw.between(-1.0, 1.0)))
             .collect();
         let shares: Vec<f64> = (0..count).map(|_| draw.between(0.1, 1.0)).collect();
-        // The last makes up for what the others leave.
+        // The last balances the others.
         let last: [f64; 3] = std::array::from_fn(|axis| {
             let weight = if axis == 1 { 1.0 } else { 0.0 };
             let others: f64 = (0..count - 1).map(|i| shares[i] * wrenches[i][axis]).sum();
@@ -75,7 +75,7 @@ fn what_carries_the_weight_in_all_carries_it_by_three() {
         for choice in &found {
             assert_eq!(choice.len(), 3);
             assert!(choice.iter().all(|(_, share)| *share >= -1e-8));
-            // Shares grow as three wrenches come to lie in one plane, and rounding with them.
+            // Multiples grow as three wrenches approach one plane, and rounding errors with them.
             let most = choice
                 .iter()
                 .map(|(_, share)| share.abs())
@@ -90,13 +90,14 @@ fn what_carries_the_weight_in_all_carries_it_by_three() {
                 );
             }
         }
-        // Turned over, none of these carries it, if none did both ways.
+        // Reversed, none of these carries it, if none did in both directions.
         let over: Vec<[f64; 3]> = wrenches.iter().map(|w| w.map(|x| -x)).collect();
         assert!(count > 3 || choices(&over).is_empty(), "case {case}");
     }
 }
 
-/// Driven forwards, the ground pushes forwards; a free wheel is not pushed along, and what stands still may be either way.
+/// Driven forwards, the ground pushes forwards; a free wheel is not pushed, and one that stands still in either
+/// direction.
 #[test]
 fn friction_follows_the_grip_of_a_surface_and_the_smaller_of_two_coefficients() {
     let disc = Disc {

@@ -11,8 +11,8 @@ fn discs(draw: &mut Draw, count: usize) -> Vec<Disc> {
     (0..count).map(of).collect()
 }
 
-/// Two convex bodies are as far apart as the direction that separates them most has them. The best of 10,000 is off it by half a
-/// step at most, and the nearest points of the bodies are 2 m from each other at most.
+/// The distance of two convex bodies is their largest separation along any direction. The best of 10,000 directions is
+/// off by at most half a step, and the nearest points of the bodies are at most 2 m apart.
 #[test]
 fn the_distance_of_a_part_is_the_most_that_a_direction_separates_it() {
     let mut draw = Draw(21);
@@ -41,14 +41,14 @@ fn the_distance_of_a_part_is_the_most_that_a_direction_separates_it() {
             );
         } else if expected < -1e-3 {
             over += 1;
-            // Of bodies that overlap only that is known.
+            // For bodies that overlap, only this is known.
             assert!(found < 0.0, "case {case}: {found} {expected}");
         }
     }
     assert!(apart > 100 && over > 50, "{apart} {over}");
 }
 
-/// Ground that is level but for a rounded step.
+/// Ground that is level except for a rounded step.
 fn step() -> Vec<Place> {
     let (height, round) = (0.1, 0.01);
     let face = |from: [f64; 2], to: [f64; 2], normal: Vector| {
@@ -112,7 +112,7 @@ fn a_wheel_is_clear_over_the_ground_and_nowhere_else() {
         }
         assert!(is_clear_at(-0.5, 3.0) && is_clear_at(0.005, 3.0) && is_clear_at(0.0, 3.0));
     }
-    // Of two parts one is enough.
+    // One of two parts is enough.
     layout.solids.push(Solid::new(
         0,
         vec![Disc {
@@ -126,7 +126,7 @@ fn a_wheel_is_clear_over_the_ground_and_nowhere_else() {
     };
     assert!(is_clear(&layout, &places, &at(0.15), tolerance));
     assert!(!is_clear(&layout, &places, &at(0.1), tolerance));
-    // And what is over another lane has none of this ground under it.
+    // And parts over another lane have none of this ground under them.
     layout.solids[1].lane = 1;
     assert!(!is_clear(&layout, &places, &at(0.15), tolerance));
 }

@@ -1,4 +1,4 @@
-//! Poses that contacts fix are found: whatever is made to touch and to balance in a pose, is found there.
+//! Poses that contacts fix are found: a robot made to touch and to balance in a pose is found there.
 
 use super::*;
 use crate::geometry::cross;
@@ -68,7 +68,7 @@ fn the_pose_in_which_three_surfaces_were_made_to_touch_is_found() {
                 "case {case}"
             );
         }
-        // And any two of them can be together at that angle.
+        // And any two of them can occur together at that angle.
         for (i, j) in [(0, 1), (0, 2), (1, 2)] {
             let both = [i, j].map(|k| contact_of(&setting, k));
             let bins = setting.together(both[0].min(both[1]), both[0].max(both[1]));
@@ -131,8 +131,8 @@ fn is_found(
     found.iter().any(|posture| is_near(posture, at))
 }
 
-/// The centre of mass is put over the point in which the lines of two forces meet, or both lines and that of the weight are
-/// parallel.
+/// The centre of mass is put over the point in which the lines of two forces meet, or both lines and that of the weight
+/// are parallel.
 #[test]
 fn the_pose_in_which_two_forces_were_made_to_carry_the_weight_is_found() {
     let mut draw = Draw(4);
@@ -208,7 +208,7 @@ fn the_pose_in_which_one_force_was_made_to_carry_the_weight_is_found() {
             found.iter().any(|posture| is_near(posture, &at)),
             "case {case}: {at:?}"
         );
-        // Nothing is found at angles that are not asked for.
+        // Nothing is found at other angles.
         for off in [-0.3, 0.3] {
             let angles = [at.angle + off - 0.2, at.angle + off + 0.2];
             let (layout, places) = (setting.layout.clone(), setting.places.clone());
@@ -224,7 +224,7 @@ fn the_pose_in_which_one_force_was_made_to_carry_the_weight_is_found() {
     }
 }
 
-/// A disc on a face and on the corner at its end are one there; discs apart are two contacts of one face.
+/// Contacts of a disc on a face and on the corner at its end coincide there; two discs are two contacts of one face.
 #[test]
 fn contacts_that_come_together_are_one_and_others_are_not() {
     let radius = 0.05;
@@ -268,7 +268,8 @@ fn contacts_that_come_together_are_one_and_others_are_not() {
     assert!(matches!(of(0, 0).kind, Kind::OnFace(..)));
 }
 
-/// Two straight runs that are parallel cannot turn on two corners, only slide. Corners that rub unlike have forces that meet.
+/// Two parallel straight runs cannot turn on two corners, only slide. Corners with different friction have forces that
+/// meet.
 #[test]
 fn the_pose_of_two_parallel_runs_that_carry_the_weight_is_found() {
     let mut draw = Draw(6);
@@ -299,7 +300,8 @@ fn the_pose_of_two_parallel_runs_that_carry_the_weight_is_found() {
     assert!(tried > 50, "{tried}");
 }
 
-/// The same balance on a corner whose faces hide the point, on a face that ends before it, and at an angle that is not asked for.
+/// The same balance on a corner whose faces hide the point, on a face that ends before it, and at an angle that is not
+/// searched.
 #[test]
 fn a_balance_on_what_is_not_there_is_none() {
     let cancel = Cancel::default();

@@ -39,7 +39,7 @@ fn a_contact_is_where_it_was_weighed_by_its_force() {
     assert_eq!(bearing.contact.surface_speed, 5.5);
 }
 
-/// A surface that is as good as on the ground could bear, and so counts even without a force.
+/// A surface that almost touches the ground could bear, and so counts even without a force.
 #[test]
 fn what_neither_bears_nor_touches_is_no_contact_of_a_stop() {
     let (near, far) = (0.5 * TOUCHES.value(), 2.0 * TOUCHES.value());
@@ -70,7 +70,8 @@ fn the_range_of_motion_is_that_of_all_steps_and_of_no_other_place() {
     assert_eq!(stance.position, Vector::new(5.0, -2.0));
 }
 
-/// Steps of three lengths over two windows, of a contact and a drive: each mean is the sum of value times time over the time.
+/// Steps of three lengths over two windows, of a contact and a drive: each mean is the sum of value times time over the
+/// time.
 #[test]
 fn means_over_two_windows_weigh_each_step_by_its_time() {
     let steps = [
@@ -147,7 +148,7 @@ fn loads_of_an_interval_are_means_of_each_contact_that_bears() {
     assert_eq!((loads.count(), loads.drain().count()), (0, 0));
 }
 
-/// Only what a run can have gathered is taken from a snapshot.
+/// Only data that a run can have gathered are accepted from a snapshot.
 #[test]
 fn sums_with_one_thing_spoilt_do_not_fit() {
     type Spoil = fn(&mut WindowSums);

@@ -1,4 +1,4 @@
-//! A monitor with synthetic readings: what it observes, and when it ends a run.
+//! A monitor with synthetic readings: its observations, and when it ends a run.
 #![allow(clippy::float_cmp)] // lengths and times here are exact in binary, or repeated unchanged
 
 mod ends;

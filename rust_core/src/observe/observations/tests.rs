@@ -181,7 +181,7 @@ fn a_command_that_ends_or_turns_round_ends_a_stop_but_frees_nobody() {
     }
 }
 
-/// A slower command has a longer window, which is not whole at first.
+/// A slower command has a longer window, which is incomplete at first.
 #[test]
 fn a_stop_goes_on_when_the_command_gets_slower() {
     let mut way = Way::new(1.0);

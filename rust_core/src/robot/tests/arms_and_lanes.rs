@@ -1,4 +1,4 @@
-//! Arms by hand, and tracks over lanes of their own.
+//! Arms computed by hand, and tracks on separate lanes.
 
 use super::*;
 

@@ -1,4 +1,4 @@
-//! What the samples of a run say, and the memory that is set aside for them.
+//! Samples of a run, and the memory reserved for them.
 
 use super::*;
 use crate::scenario::{Terrain, Track};
@@ -15,7 +15,7 @@ fn level() -> Scenario {
     scenario
 }
 
-/// It speeds up with 0.2 m/s^2, for which the friction of 0.9 is plenty: only softness and creep are left.
+/// It accelerates at 0.2 m/s^2, for which a friction of 0.9 is ample: only softness and creep remain.
 #[test]
 fn a_belt_on_level_ground_hardly_slips() {
     let checked = ValidScenario::new(&level()).expect("it is valid");
@@ -71,7 +71,8 @@ fn a_batch_needs_room_for_its_threads_and_for_what_its_runs_give_back() {
     assert_eq!(bytes_besides([].into_iter(), 1), 2_097_152);
 }
 
-/// A sample has 14 numbers, 3 for each drive, 3 for each shoe and 2 for the arms at each end, a contact 15; 8 bytes each.
+/// A sample has 14 numbers, 3 for each drive, 3 for each shoe and 2 for the arms at each end, a contact 15; 8 bytes
+/// each.
 #[test]
 fn a_sample_needs_room_for_its_numbers_and_for_contacts_of_half_of_the_parts() {
     let columns = Columns {
@@ -82,7 +83,7 @@ fn a_sample_needs_room_for_its_numbers_and_for_contacts_of_half_of_the_parts() {
     };
     assert_eq!(Trace::bytes(columns), 8 * (14 + 6 + 9 + 2));
     assert_eq!(ContactTable::bytes(columns), 8 * 15);
-    // A belt and a belly: two contacts all the same.
+    // A belt and a belly: two contacts nevertheless.
     let belt = level();
     let bytes = |robot| bytes_of_sample(&Model::new(robot).expect("it is valid"));
     assert_eq!(bytes(&belt.robot), 8 * (14 + 3) + 2 * 8 * 15);

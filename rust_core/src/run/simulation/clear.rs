@@ -56,7 +56,7 @@ impl Simulation {
         (self.set_point, self.last.set_point) = (0.0, 0.0);
     }
 
-    /// Moves it straight up until it is clear.
+    /// The displacement normal to its own underside after which it is clear.
     fn raised_clear(&mut self) -> Option<Displacement> {
         /// [m] First distance; it doubles until it exceeds the height of any robot.
         const FIRST: Metres = Metres(0.01);

@@ -1,4 +1,4 @@
-//! Which outcome counts if several apply, what counts as ground inside the track, and what holds in every step.
+//! Precedence of outcomes, the definition of ground inside the track, and invariants of every step.
 
 use super::*;
 use crate::contact::Contact;
@@ -142,7 +142,7 @@ fn where_ground_is_jammed_that_counts_before_ground_with_more_load() {
     assert!(inside.place.bodies[0] != inside.place.bodies[1]);
 }
 
-/// Everything that moves, and what bears, in bits.
+/// Everything that moves, and the contacts, in bits.
 fn bits(simulation: &Simulation) -> Vec<u64> {
     let (now, contacts) = (simulation.reading(), simulation.contact_table());
     let pose = [now.position.x, now.position.y, now.chassis_angle];
@@ -186,8 +186,8 @@ fn a_copy_in_the_middle_of_a_run_goes_on_with_the_same_bits_in_either_engine() {
     }
 }
 
-/// Contacts and the push, which is no contact force, against weight and inertia: over a second against a step, as a share
-/// of the weight and the forces in each step.
+/// Contacts and the push, which is no contact force, against weight and inertia: over a second against a step, as a
+/// share of the weight and the forces in each step.
 #[test]
 fn a_robot_that_is_pushed_by_a_force_keeps_the_balance_in_every_step() {
     for support in [ForceSupport::Skids, ForceSupport::Wheels] {
@@ -213,7 +213,7 @@ fn a_robot_that_is_pushed_by_a_force_keeps_the_balance_in_every_step() {
     }
 }
 
-/// Without torque there is no motor; with some there is one, whatever was there before.
+/// Without torque there is no motor; with torque there is one, whatever was there before.
 #[test]
 fn a_branch_has_the_motors_of_its_own_torque() {
     let mut weak = engineer();
@@ -229,14 +229,14 @@ fn a_branch_has_the_motors_of_its_own_torque() {
     let mut rolls = drives.branch(&weak);
     run_until(&mut rolls, 0.9);
     assert!(rolls.drive_force().abs() < 1e-12);
-    // A snapshot has no motor that the robot has not.
+    // A snapshot has no motor that the robot does not have.
     let [without, with] = [&stands, &drives].map(|robot| robot.dynamics.impulses());
     let lanes = &drives.ground.lanes;
     assert!(drives.dynamics.fits(&with, lanes) && stands.dynamics.fits(&without, lanes));
     assert!(!drives.dynamics.fits(&without, lanes) && !stands.dynamics.fits(&with, lanes));
 }
 
-/// Half of the stiffness times the square of the travel, less the pre-tension times the travel, of both tracks.
+/// Half of the stiffness times the square of the travel, minus the pre-tension times the travel, for both tracks.
 #[test]
 fn a_tensioner_gives_its_pre_tension_and_takes_its_stiffness() {
     let text = include_str!("../../../../tests/scenarios/engineer_chain_step.json");
@@ -285,8 +285,8 @@ fn a_robot_that_stays_is_over_unless_a_push_has_just_risen() {
     assert!(!simulation.is_over(), "it may leave");
 }
 
-/// Without friction 42.4 N give it 42.4 N s in a second, half as much while they rise. Its track of 2.4 kg runs along with its
-/// 21.2 kg, but not in the other engine, where a force is all that it is.
+/// Without friction, 42.4 N give it 42.4 N s in a second, and half as much while they rise. Its track of 2.4 kg moves
+/// with its 21.2 kg, but not in the other engine, where the track is only a force.
 #[test]
 fn a_push_moves_a_robot_in_either_engine() {
     for (engine, mass) in [(Engine::Own, 21.2 + 2.4), (Engine::Rapier, 21.2)] {
@@ -359,7 +359,7 @@ fn a_branch_of_a_heavier_robot_goes_on_at_its_speed_and_with_its_arms_where_they
             assert!((found - angle).abs() < 1e-12, "{found} rad, {angle} rad");
         }
     }
-    // One that gets arms has them where the scenario starts them.
+    // A robot that gets arms has them at their initial angle in the scenario.
     let mut bare = Simulation::new(&armless);
     run_until(&mut bare, 0.1);
     let arms = angles(&bare.branch(&own));
@@ -390,8 +390,8 @@ fn bodies_of_a_simulation_add_up_to_the_robot() {
     }
 }
 
-/// Rods of 1.55 kg and 0.34 m at 0.8 rad, on a chassis at 1 m/s: turning at 2 rad/s their middle moves by 0.34 m/s, of which
-/// 0.34 m/s sin 0.8 = 0.2439 m/s backwards.
+/// Rods of 1.55 kg and 0.34 m at 0.8 rad, on a chassis at 1 m/s: turning at 2 rad/s their middle moves by 0.34 m/s, of
+/// which 0.34 m/s sin 0.8 = 0.2439 m/s backwards.
 #[test]
 fn an_arm_that_turns_upwards_takes_speed_from_its_middle() {
     let text = include_str!("../../../../tests/scenarios/engineer_flippers_step.json");

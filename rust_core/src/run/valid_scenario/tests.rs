@@ -1,4 +1,4 @@
-//! What a scenario that was checked keeps, and what is built anew for another.
+//! The robot and ground that a checked scenario keeps, and which are rebuilt for another.
 
 use super::*;
 use crate::run::Simulation;
@@ -135,14 +135,14 @@ fn the_corners_of_lanes_are_those_of_the_tracks_and_of_the_belly() {
         middle,
     };
     assert_eq!(corners(&lanes(Some(lane(4, 0.0)))), 2 + 5 + 4);
-    // Without a profile of its own the belly has all edges of both tracks'.
+    // Without its own profile, the belly has all edges of both tracks.
     assert_eq!(corners(&lanes(None)), 2 * (2 + 5));
     // 90 facets for each corner, and at most a million together.
     assert_eq!(corners(&lane(3, 0.01)), 3 + 3 * 90);
     assert_eq!(corners(&lane(20_000, 0.01)), 20_000 + 1_000_000);
 }
 
-/// So that memory is asked for before the ground takes it; both ends of it are no corners.
+/// So that memory is requested before the ground uses it; the ends are not corners.
 #[test]
 fn ground_has_no_more_corners_than_are_asked_for() {
     let surface = |edge_radius: f64| Surface::rounded(edge_radius, 0.9);

@@ -220,7 +220,7 @@ fn a_place_along_a_straight_piece_is_where_its_fraction_lies() {
     assert_relative_eq!(beyond.as_slice(), [0.0, 1.0].as_slice());
 }
 
-/// What is left of the face is half a nanometre, which has no direction.
+/// The rest of the face is half a nanometre, which has no direction.
 #[test]
 fn an_arc_that_takes_up_its_face_ends_at_the_next_corner() {
     let width = 0.1 + 5e-10;

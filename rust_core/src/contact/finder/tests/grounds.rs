@@ -22,7 +22,7 @@ pub(super) struct Ground {
 pub(super) const KINDS: usize = 11;
 
 impl Ground {
-    /// One whose arcs take up a whole face, or all but a share of it, if that is given.
+    /// One whose arcs take up a whole face, or all of it except a given fraction.
     pub(super) fn random(kind: usize, left: Option<f64>, draw: &mut Draw) -> Self {
         let corners = corners(kind, draw);
         let rounded = draw.chance(0.5);
@@ -48,7 +48,7 @@ impl Ground {
         let points: Vec<[f64; 2]> = corners.iter().map(|p| [p.x, p.y]).collect();
         let profile =
             Profile::new("terrain", &points, Surface::rounded(radius, 0.9), false).ok()?;
-        // Points on straight ground are none of its corners.
+        // Points on straight ground are not corners.
         let bends: HashSet<usize> = profile.bends().iter().map(|i| *i as usize).collect();
         let straight = (0..profile.points.len()).filter(|i| !bends.contains(i));
         let straight: Vec<Vector> = straight.map(|i| profile.points[i]).collect();

@@ -155,7 +155,7 @@ fn capsule(middle: Vector, reach: f64, draw: &mut Draw) -> (Shape, Vec<Curve>, f
 
 fn gear(radius: f64, draw: &mut Draw) -> Gear {
     let grousers = 6 + draw.below(43) as u32;
-    // Grousers are higher than anything sinks in.
+    // Grousers are higher than any penetration.
     let root_radius = radius - draw.between(1.1e-3_f64.max(0.05 * radius), 0.3 * radius);
     let room = 2.0 * root_radius * (0.5 * TAU / f64::from(grousers)).sin();
     let base_thickness = room * draw.between(0.15, 0.8);

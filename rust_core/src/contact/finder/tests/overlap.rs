@@ -230,7 +230,7 @@ fn a_part_leaves_the_ground_along_its_contacts() {
         // A second time, in case the adjacent face is deeper than the one it was in.
         for _ in 0..2 {
             let contacts = scene.contacts(PREDICTION);
-            // There is none where it is wedged; and on a long way out it may meet more ground.
+            // There is none if it is wedged; and on a long way out it may meet more ground.
             let way = way_out(&contacts, least).filter(|w| w.length() < PREDICTION);
             is_free &= way.is_some();
             scene.push(way.unwrap_or_default());
@@ -278,7 +278,7 @@ fn a_tip_wedged_into_an_inner_corner_bears_on_both_faces() {
     }
 }
 
-/// However flat it lies: the corner of the step is then out of its underside by no more than rounding.
+/// However flat it is: the corner of the step is then outside its underside only by rounding.
 #[test]
 fn a_block_that_lies_on_a_step_bears_with_both_ends() {
     let contact = polygon_at_step(&[[-0.01, 0.0], [0.01, 0.0], [0.01, 0.02], [-0.01, 0.02]]);

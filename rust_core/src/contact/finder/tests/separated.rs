@@ -34,8 +34,8 @@ fn reached(approach: &Approach, contacts: &[Contact], far: f64) -> f64 {
     corners.map(at_corner).fold(f64::INFINITY, f64::min)
 }
 
-/// Whether the place is a contact, or, on finely divided ground, others keep the part off it, or it lies between two
-/// others with the same normal and is no nearer than these.
+/// Whether the place is a contact; or other contacts keep the part off it on finely divided ground; or it lies between
+/// two others with the same normal and is no nearer than these.
 fn is_reported(approach: &Approach, contacts: &[Contact], scene: &Scene, prediction: f64) -> bool {
     let [p, q] = approach.ends;
     let (middle, distance) = (0.5 * (p + q), approach.distance());

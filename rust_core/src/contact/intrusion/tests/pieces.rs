@@ -1,4 +1,4 @@
-//! What a track holds of a ground that is known by hand.
+//! The ground inside a track, for grounds whose pieces are known by hand.
 
 use super::*;
 
@@ -10,8 +10,8 @@ fn ground(points: &[[f64; 2]]) -> Profile {
     Profile::new("terrain", points, Surface::sharp(0.9), true).expect("it is ground")
 }
 
-/// A track that is turned by an angle [rad], over two posts of 2 cm that rise to 3 cm inside it, 0.1 m before and behind its
-/// middle, and the middles of their tops.
+/// A track that is turned by an angle [rad], over two posts of 2 cm that rise to 3 cm inside it, 0.1 m before and
+/// behind its middle, and the middles of their tops.
 fn two_posts(angle: f64) -> (Pose, Profile, [Vector; 2]) {
     let pose = Pose::from_parts(Vector::new(0.1, 0.5), Rotation::new(angle));
     let tops = [-0.1, 0.1].map(|x| pose.transform_point(Vector::new(x, -0.05)));

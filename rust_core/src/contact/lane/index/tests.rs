@@ -1,4 +1,4 @@
-//! The tables and stretches of the index against what they sum up.
+//! The tables and stretches of the index, compared with their pieces.
 
 use super::*;
 use crate::contact::lane::tests::lane;
@@ -218,7 +218,7 @@ fn the_corner_that_rises_highest_is_found_if_it_rises_by_more_than_the_least() {
     }
 }
 
-/// Of every level, from those of a few pieces to that of all.
+/// Of every level, from a few pieces to all.
 #[test]
 fn a_stretch_bounds_the_places_and_the_normals_of_its_pieces() {
     let mut draw = Draw(20_270_208);

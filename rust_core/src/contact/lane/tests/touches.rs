@@ -1,4 +1,4 @@
-//! What a disc and a straight run bear on, one touch at a time, and which points lie in the ground.
+//! Touches of a disc and of a straight run, one at a time, and points in the ground.
 
 use super::*;
 use crate::geometry::right_of;

@@ -1,4 +1,4 @@
-//! Intervals, rectangles and turns hold all that they are of, and are no wider than that takes.
+//! Intervals, rectangles and turns contain all their values, and are no wider than necessary.
 #![allow(clippy::float_cmp)] // an end of a product is the product of two ends
 
 use super::*;
@@ -26,7 +26,7 @@ fn corners(all: Rectangle) -> [Vector; 4] {
         .map(|[x, y]| all.middle + all.half * Vector::new(x, y))
 }
 
-/// The least and the greatest of some numbers.
+/// The smallest and the largest of several numbers.
 fn range(numbers: impl IntoIterator<Item = f64>) -> [f64; 2] {
     let both = |[low, high]: [f64; 2], x: f64| [low.min(x), high.max(x)];
     (numbers.into_iter()).fold([f64::INFINITY, f64::NEG_INFINITY], both)
@@ -88,8 +88,8 @@ fn a_decision_keeps_its_margin() {
     assert!(!Interval::new(-1.0, 1.0).is_signed());
 }
 
-/// What is linear is least and greatest at corners, and so is the greatest distance; the nearest point of a rectangle to the
-/// origin has each coordinate as near to 0 as it can be.
+/// What is linear is least and greatest at corners, and so is the greatest distance; the nearest point of a rectangle
+/// to the origin has each coordinate as near to 0 as it can be.
 #[test]
 fn a_rectangle_reaches_as_far_as_its_corners_and_as_near_as_its_sides() {
     let mut draw = Draw(2);
@@ -116,8 +116,8 @@ fn a_rectangle_reaches_as_far_as_its_corners_and_as_near_as_its_sides() {
     }
 }
 
-/// Corners turned to both ends of the range of angles, and half way, are all within; within so small a range they reach the
-/// bounds up to the square of it, and up to how far the corners are from the middle, which turns along.
+/// Corners turned to both ends of the range of angles, and half way, are all within; within so small a range they reach
+/// the bounds up to the square of it, and up to how far the corners are from the middle, which turns along.
 #[test]
 fn a_turned_rectangle_lies_within_its_bounds_and_all_but_reaches_them() {
     let mut draw = Draw(3);
@@ -151,7 +151,7 @@ fn a_turned_rectangle_lies_within_its_bounds_and_all_but_reaches_them() {
     }
 }
 
-/// As the robot sees it, the ground turns the other way.
+/// In the robot's frame, the ground turns in the opposite direction.
 #[test]
 fn what_is_seen_lies_within_its_distance_and_all_but_reaches_it() {
     let mut draw = Draw(4);
@@ -211,7 +211,7 @@ fn a_rectangle_of_normals_is_that_round_their_arc() {
     }
 }
 
-/// A value in proportion is least and greatest where each parameter is least or greatest.
+/// A linear value is smallest and largest where each parameter is smallest or largest.
 #[test]
 fn what_is_in_proportion_ranges_between_the_corners_of_a_cell() {
     let mut draw = Draw(5);

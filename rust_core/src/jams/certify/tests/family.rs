@@ -1,4 +1,4 @@
-//! What a family of robots and grounds is made of, and which it refuses.
+//! Contents of a family of robots and grounds, and the families that are refused.
 
 #![allow(clippy::float_cmp)] // shares are halves of halves
 
@@ -35,7 +35,7 @@ fn a_family_is_its_members_where_parameters_are_least_or_most() {
     }
 }
 
-/// All of the robot is over the ground, as far as it reaches, and no higher or lower than it can touch.
+/// The whole robot is over the ground, within its reach, and no higher or lower than it can touch.
 #[test]
 fn poses_are_sought_over_all_of_the_ground() {
     let family = family_on_a_step();
@@ -71,7 +71,8 @@ fn poses_are_sought_over_all_of_the_ground() {
     );
 }
 
-/// About the centre of mass of all it is that about the chassis frame, less the whole mass times the square of the distance.
+/// About the centre of mass of all it is that about the chassis frame, less the whole mass times the square of the
+/// distance.
 #[test]
 fn arms_count_in_the_moment_of_inertia_where_they_are_held() {
     let text = include_str!("../../../../../tests/scenarios/engineer_flippers_step.json");
@@ -165,7 +166,7 @@ fn parameters_that_do_nothing_or_something_else_or_not_in_proportion_are_refused
     assert_eq!(refused(|all| all[2].robot.belly = None), friction);
 }
 
-/// Wheels in a row jam at some heights and not at others, so the ranges are divided as far as they may be.
+/// Wheels in a row jam at some heights and not at others, so the ranges are divided as far as allowed.
 #[test]
 fn no_region_is_smaller_than_asked_for_and_together_they_are_all() {
     let closed = members().map(|mut scenario| {

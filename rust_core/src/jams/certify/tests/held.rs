@@ -1,8 +1,8 @@
-//! Jams that are there at every value of the parameters, and how deep the ground is inside the track.
+//! Jams that exist at every value of the parameters, and the depth of ground inside the track.
 
 use super::*;
 
-/// At every value the robot stands in a pose next to that, where its three surfaces touch.
+/// At every value, the robot stands in a pose close to that, with its three surfaces touching.
 #[test]
 fn what_is_held_over_a_range_stands_at_every_value() {
     let family = family_on_a_step();
@@ -45,8 +45,8 @@ fn what_is_held_over_a_range_stands_at_every_value() {
     assert!(held > 20 && not > 8);
 }
 
-/// In one pose it is the gap, on a corner half the difference of the squares over the circle's radius, which begins alike; over a
-/// cell it holds those of all its poses, and so do the slopes.
+/// In one pose it is the gap, on a corner half the difference of the squares over the circle's radius, which begins
+/// alike; over a cell it holds those of all its poses, and so do the slopes.
 #[test]
 fn a_gap_over_a_cell_holds_those_of_its_poses() {
     let family = family_on_a_step();

@@ -1,10 +1,11 @@
-//! How deep the ground is inside a track, in poses and over cells.
+//! Depth of the ground inside a track, in poses and over cells.
 
 use super::*;
 use crate::jams::contact::Turn;
 use crate::jams::places::{Facing, Place};
 
-/// [m] The deepest of points every half millimetre of the ground, a rounded corner by its centre.
+/// [m] The depth of the deepest of points every half millimetre along the ground, with rounded corners by their
+/// centres.
 fn deepest(family: &Family, places: &[Place], at: &Posture) -> f64 {
     let back = Turn::by(-at.angle);
     let depth = |point: Vector| {
@@ -59,7 +60,7 @@ fn clear(draw: &mut Draw, family: &Family) -> (Cell, Setting) {
     (point, setting)
 }
 
-/// Depth changes by no more than the way along the ground, so half a millimetre misses a quarter of one at most.
+/// Depth changes by no more than the distance along the ground, so steps of half a millimetre miss at most a quarter.
 #[test]
 fn ground_is_as_deep_inside_a_track_as_its_deepest_point() {
     let family = family_on_a_step();

@@ -1,4 +1,4 @@
-//! What can touch in a cell, beside what touches in poses of it.
+//! Possible contacts in a cell, compared with contacts in its poses.
 
 use super::*;
 
@@ -7,7 +7,7 @@ fn pairs(setting: &Setting, contacts: &[usize]) -> Vec<(usize, usize)> {
     contacts.iter().map(of).collect()
 }
 
-/// A cell of one pose has in it just what touches there: normals, arms and frictions, too.
+/// A cell of one pose contains exactly the contacts there, with their normals, arms and friction.
 #[test]
 fn in_a_cell_of_one_pose_just_that_is_possible_which_touches_there() {
     let family = family_on_a_step();
@@ -43,7 +43,7 @@ fn in_a_cell_of_one_pose_just_that_is_possible_which_touches_there() {
     }
 }
 
-/// Whatever touches in some pose of a cell is among what is possible in it, with its normal.
+/// Every contact in a pose of a cell is among the possible ones, with its normal.
 #[test]
 fn a_cell_has_all_that_touches_in_poses_of_it() {
     let family = family_on_a_step();
@@ -81,8 +81,8 @@ fn a_cell_has_all_that_touches_in_poses_of_it() {
     assert!(tried > 100, "{tried}");
 }
 
-/// A cell in which a part overlaps with the ground everywhere has no pose in which it does not; of wheels, one of one pose tells
-/// all that overlap.
+/// A cell in which a part overlaps with the ground everywhere has no pose in which it does not; of wheels, one of one
+/// pose tells all that overlap.
 #[test]
 fn where_all_of_a_cell_overlaps_no_pose_of_it_is_clear() {
     let wheels = members().map(|mut scenario| {

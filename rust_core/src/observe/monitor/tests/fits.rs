@@ -1,4 +1,4 @@
-//! Which observations a monitor can have made, and which not.
+//! Possible and impossible observations of a monitor.
 
 use super::stops::astride;
 use super::*;

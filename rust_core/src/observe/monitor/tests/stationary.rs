@@ -6,7 +6,7 @@ use crate::scenario::{Ends, Flippers, Gait, GearWheel, Hold, LineOfWheels, Pi, T
 /// [s] Length of a stop window, and of three.
 const WINDOW: f64 = 0.5;
 const THREE: f64 = 1.5;
-/// [m] How much a stationary pose may change.
+/// [m] Allowed change of a stationary pose.
 const TOLERANCE: f64 = 0.0625;
 
 fn robot(change: impl Fn(&mut Scenario)) -> Watched {
@@ -18,8 +18,8 @@ fn robot(change: impl Fn(&mut Scenario)) -> Watched {
     })
 }
 
-/// When the run of a robot is over that stands still from the beginning, if that is within four windows: it
-/// stands for a while, is changed, and stands still again.
+/// The end of the run of a robot that stands still from the beginning, if it is within four windows: it stands for a
+/// while, is changed, and stands still again.
 fn over_at(mut robot: Watched, change: impl Fn(&mut Watched)) -> Option<f64> {
     for (time, changes) in [(0.7, true), (4.0 * WINDOW, false)] {
         while robot.now.time < time {

@@ -1,4 +1,4 @@
-//! Stops: when they begin and end, what their events hold, and what is kept for a diagnosis.
+//! Stops: their begin and end, their events, and the data for a diagnosis.
 
 use super::*;
 use crate::observe::EventKind;
@@ -94,7 +94,7 @@ fn a_pause_parts_a_stop_in_two_that_do_not_overlap() {
     }
 }
 
-/// As in another engine, whose steps all have one length.
+/// As in another engine with a fixed step.
 #[test]
 fn a_stop_is_seen_as_soon_if_steps_are_longer_than_the_time_between_two_looks() {
     let mut robot = Watched::with(|_| {});

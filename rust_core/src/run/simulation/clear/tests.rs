@@ -1,6 +1,6 @@
-//! The nearest clear pose against a search on a grid. Do trials come out alike when the robot is lifted off the ground at
-//! its stop and set down again nearby? Those stops come from a file, a line each, which `tests/trials/test_restarts.py` writes
-//! and whose answers it reads.
+//! The nearest clear pose against a search on a grid; and whether trials have the same results when the robot is lifted
+//! off the ground at its stop and set down nearby. Those stops come from a file, one per line, which
+//! `tests/trials/test_restarts.py` writes, and whose answers it reads.
 
 use serde_json::{Value, json};
 
@@ -95,13 +95,13 @@ fn a_robot_that_is_clear_stays_where_it_is_and_rests() {
     assert!(now.track_position.to_bits() == phase.to_bits());
 }
 
-/// [m, rad] How far from the stop a robot is set down at most.
+/// [m, rad] Largest distance from the stop at which a robot is set down.
 const AWAY: (f64, f64) = (1e-3, 1e-3);
-/// [m] Between two heights at which it is tried, and the greatest.
+/// [m] Interval of the heights that are tried, and the largest one.
 const RISE: f64 = 5e-5;
 const HIGHEST: f64 = 0.01;
 
-/// At rest, displaced and lifted along its own normal until it is clear of the ground; `None` if it stays in it.
+/// At rest, displaced and lifted along its own normal until it is clear of the ground; `None` if it never is.
 fn set_down(mut robot: Simulation, draw: &mut Draw) -> Option<Simulation> {
     robot.stand_still();
     let turn = draw.between(-AWAY.1, AWAY.1) * robot.half_length();
@@ -123,7 +123,7 @@ fn set_down(mut robot: Simulation, draw: &mut Draw) -> Option<Simulation> {
     None
 }
 
-/// Whether a robot gets ahead of where it had come [m], or clears, in the time of a trial.
+/// Whether a robot gets farther than before [m], or clears, in the time of a trial.
 fn gets_away(mut robot: Simulation, greatest: f64) -> bool {
     let end = robot.time() + trials::duration(&robot, Change::ClosedTrack);
     let (direction, far) = (robot.direction(), robot.scenario.criteria.escape_distance);

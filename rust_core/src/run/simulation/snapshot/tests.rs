@@ -1,5 +1,5 @@
-//! A snapshot loses nothing, and every part of it affects what comes next. One with correct head and digest may still hold a
-//! state that no simulation can reach.
+//! A snapshot loses nothing, and every part of it affects what comes next. One with correct head and digest may still
+//! hold a state that no simulation can reach.
 
 use super::*;
 use crate::contact::Contact;
@@ -10,7 +10,7 @@ use crate::scenario::{
     BeltTrack, End, Ends, Flippers, LineOfWheels, Surface, Terrain, Track, Wheel,
 };
 
-/// The Engineer with front arms, on three wheels in front of a post, after a while.
+/// The Engineer with front arms, on three wheels in front of a post, after some time.
 fn on_wheels() -> Simulation {
     let text = include_str!("../../../../../tests/scenarios/engineer_belt_step.json");
     let mut scenario = Scenario::from_json(text).expect("the shared scenario is valid");
@@ -211,7 +211,7 @@ fn a_snapshot_of_another_build_is_refused() {
     assert!(refusal.contains(BUILD_ID), "{refusal}");
 }
 
-/// [m] How far beyond the ground a robot may be.
+/// [m] Allowed distance of a robot beyond the ground.
 const FAR: f64 = 1e6;
 
 /// A simulation, and the contents of its snapshot.
@@ -252,7 +252,7 @@ fn of_nobody() -> Contact {
 
 type Spoil = fn(&mut SavedState);
 
-/// Each spoils one thing.
+/// Each makes one thing invalid.
 const SPOILS: [(&str, Spoil); 16] = [
     ("time", |m| m.time += 1.0),
     ("step_control", |m| m.step_control = StepControl::never()),

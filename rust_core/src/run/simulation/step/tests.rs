@@ -1,11 +1,11 @@
-//! Steps: where they end, what they see and what they leave out.
+//! Steps: their ends, the range of their search for contacts, and the contacts that they leave out.
 
 use super::*;
 use crate::robot::Running;
 use crate::run::ValidScenario;
 use crate::scenario::{Scenario, Track, Wheel};
 
-/// [m] How far the tips of gear wheels reach into the ground at their lowest.
+/// [m] Depth of the tips of gear wheels in the ground at their lowest.
 const DIP: f64 = 5e-6;
 const STEP: f64 = 0.01;
 /// Times at which gaps are looked at in a step.
@@ -50,7 +50,7 @@ fn spinning(phase: f64) -> Simulation {
     simulation
 }
 
-/// Their phases are no mirror image of themselves: which way they turn matters.
+/// Their phases are not symmetric, so the direction of rotation matters.
 #[test]
 fn a_robot_starts_with_its_lowest_tip_on_the_ground_whatever_its_phase() {
     for phase in [0.0, 0.004, 0.013, 0.031] {
@@ -112,7 +112,7 @@ fn a_step_in_which_forces_move_more_than_the_room_of_gaps_left_out_is_halved() {
     assert_ne!(simulation.judge(&tried), Err(half));
 }
 
-/// One that were longer could be found too long again and again.
+/// A longer one could be found too long repeatedly.
 #[test]
 fn no_piece_is_longer_than_the_step_that_was_asked_for() {
     let little = 0.3 * COLLISION_STEP.value();
@@ -131,7 +131,7 @@ fn no_piece_is_longer_than_the_step_that_was_asked_for() {
     }
 }
 
-/// The step ends 10 us after the strike. Where less than 10 us are left then, a step that may be as long takes them.
+/// The step ends 10 us after the strike. If less than 10 us remain then, a step that may be as long includes them.
 #[test]
 fn a_step_with_a_strike_leaves_no_short_rest() {
     for (strike, h, left, piece) in [

@@ -1,11 +1,11 @@
-//! Every rule of a scenario refuses the value that breaks it, by path and rule, and takes the last one that keeps it.
+//! Every rule of a scenario refuses a value that breaks it, by path and rule, and accepts the last valid one.
 
 use serde_json::{Value, json};
 
 use super::super::{ValidScenario, place_of};
 
-/// A scene; what of it is changed first; a field; a value that it may have, if any; one that breaks a rule; the error.
-/// Where the bound is a float64, so is the value on it: sums of powers of two.
+/// A scene; its first changes; a field; a valid value, if any; one that breaks a rule; the error. Values on bounds are
+/// exact: sums of powers of two.
 const RULES: &str = r#"
 belt | /robot/mass=32; /robot/moment_of_inertia=100 | /robot/track_mass | 31.99968 | 31.9997 | robot.track_mass must leave a hundred-thousandth of robot.mass for the chassis: at most 31.99968 kg
 belt | /robot/mass=32 | /robot/track_mass | 0.00032 | 0.000319 | robot.track_mass must be at least a hundred-thousandth of robot.mass, 0.00032 kg
@@ -142,7 +142,7 @@ belt | | /schema | 2 | 1 | schema must be
 belt | | /gravity | 9.81 | [1111111111,1111111111,1111111111,1111111111,1111111111,1111111111,1111111111,1111111111] | gravity must be a number, got [1111111111,1111111111,1111111111,1111111111,1111111111,1111111111,1111111111,11...
 "#;
 
-/// Texts that are no scenario: a part of the belt's, what stands in its place, the error.
+/// Texts that are not scenarios: a part of the belt's, its replacement, the error.
 const TEXTS: [[&str; 3]; 9] = [
     [
         r#"{"schema""#,
@@ -242,7 +242,7 @@ pub(super) fn scene(name: &str) -> Value {
     }
 }
 
-/// A value as the table writes it: JSON, or a name for a long one.
+/// A value of the table: JSON, or a name for a long one.
 pub(super) fn value(text: &str) -> Value {
     match text {
         "CHAIN" => shared("chain")["robot"]["track"].take(),

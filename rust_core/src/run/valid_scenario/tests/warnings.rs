@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use super::super::ValidScenario;
 use super::rules::{put, scene, value};
 
-/// A scene; what of it is changed first; a field; a value without a warning; one with a warning; the warning.
+/// A scene; its first changes; a field; a value without a warning; one with a warning; the warning.
 ///
 /// The Engineer is 0.365 m + 2 x 0.064 m = 0.493 m long, 0.128 m high and 0.2 m wide, and starts with its rear axle at
 /// x = -0.529 m. It drives at 0.4 m/s.
@@ -49,7 +49,7 @@ points | | /terrain/segment_friction | [3] | [3.01] | terrain.segment_friction[0
 lanes | | /terrain/right | {"kind":"flat","length":1,"friction":3} | {"kind":"flat","length":1,"friction":3.01} | terrain.right.friction = 3.01 is usually at most 3, three times
 "#;
 
-/// Warnings about a scene, as the table writes them.
+/// Warnings about a scene, written as in the table.
 fn warnings(scene: &Value) -> Vec<String> {
     let checked = ValidScenario::from_json(&scene.to_string()).expect("it is valid");
     let warnings = checked.warnings().iter();
@@ -98,7 +98,7 @@ fn the_shared_scenes_have_no_warning() {
     }
 }
 
-/// The first warning about the robot is the likely reason for which it does not fit where it is to start.
+/// The first warning about the robot is the likely reason why it does not fit at its start.
 #[test]
 fn an_error_at_the_start_has_the_first_warning_about_the_robot() {
     let mut scene = scene("points");
