@@ -1,5 +1,5 @@
-//! Times a fifth of a second in the middle of a climb beside rapier's dynamics on the same scene, where they can hold
-//! the robot: `cargo bench --bench engine`.
+//! Times a fifth of a second in the middle of a climb next to rapier's dynamics on the same scene, if they can
+//! represent the robot: `cargo bench --bench engine`.
 
 use crawler2d_benches::{SCENES, milliseconds};
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};

@@ -43,30 +43,30 @@ _FAST = (
     *("belt", "line of 3", "line of 5", "line of 9", "24 all round"),
     *("force on skids", "force on wheels"),
 )
-# Their runs cost ten times as much. Those of chains cost even more, and are left out.
+# Their runs take ten times as long. Those of chains take even longer, and are left out.
 _SLOW = ("belt with grousers", "line of 3 gears", "line of 5 gears")
 _FRICTION = 0.5
 _THICKNESS = 0.002
-# [kg m^2], [N m] A mass of 74 t at the belt holds its speed against a robot of 21 kg, and a torque
-# that brings it up to that.
+# [kg m^2], [N m] Equivalent to a mass of 74 t at the belt, which holds its speed against a robot of
+# 21 kg, and a torque that accelerates it.
 _FIRM_ROTOR, _FIRM_TORQUE = 100.0, 1e6
-# [m] Heights are tried in whole multiples of this, up to so many, from a low one on. Upwards by
-# no more than 8: models with teeth clear some heights above those that stop them.
+# [m] Unit of the heights that are tried, the largest number of units, and the first one. Upward
+# steps are at most 8 units: models with teeth clear some heights above those that stop them.
 _UNIT = 0.001
 _COUNT = 150
 _FIRST = 32
 _REACH = 8
-# [point] From the interval of one model to that of the next.
+# [point] Distance between the intervals of two models.
 _ASIDE = 1.2
 # [m] Distance to the edge left at full speed, before draws of +- 46 mm.
 _STEADY = 0.1
-# [s], [m] A run may last this long and as long as this takes at full speed; it goes some 1.4 m.
+# [s], [m] A run may last this time plus the time for this distance at full speed; it goes 1.4 m.
 _STANDING, _TRAVEL = 10.0, 2.0
 _FIELDS = ("terrain.height", "start.approach", "start.track_phase")
 
 
 class Case(NamedTuple):
-    """One track model before one obstacle at one speed [m/s], with the drives to compare."""
+    """One track model at one obstacle and speed [m/s], with the drives to compare."""
 
     model: str
     track: Track
@@ -77,7 +77,7 @@ class Case(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class HighestEdge:
-    """The height that half of the runs clear, with one drive."""
+    """The height that half of the runs clear with one drive."""
 
     model: str
     obstacle: str
@@ -85,21 +85,21 @@ class HighestEdge:
     """[m/s]"""
     drive: str
     height: float
-    """[m] Median over the draws of the highest edge cleared, in whole millimetres; 0 is none."""
+    """[m] Median over the draws of the highest edge cleared, in whole millimetres; 0 for none."""
     low: float
-    """[m] Bounds of its interval, of at least 95 % from 6 draws on: two of the heights below."""
+    """[m] Bounds of its interval, of at least 95 % from 6 draws on: two of `heights`."""
     high: float
     higher: int
-    """How many draws clear more than with the first drive of the case."""
+    """Number of draws that clear more than with the first drive of the case."""
     lower: int
-    """How many clear less."""
+    """Number of draws that clear less."""
     heights: tuple[float, ...]
     """[m] The highest edge cleared with each draw."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Plan:
-    """How to search.
+    """Parameters of the search.
 
     Attributes
     ----------
@@ -117,7 +117,7 @@ class Plan:
 
 
 def design() -> list[Case]:
-    """List the cases of the study: all speeds and rotors, but not of models that cost much."""
+    """List the cases of the study: all speeds and rotors, except for expensive models."""
     return cases() + cases(_SLOW, speeds=(0.4,), inertias=(0.0, 0.04, 0.5))
 
 
@@ -127,7 +127,7 @@ def cases(
     speeds: Sequence[float] = _SPEEDS,
     inertias: Sequence[float] = INERTIAS,
 ) -> list[Case]:
-    """List the cases with rotors, and last the firm motor, which a force track has no use for."""
+    """List the cases with rotors, last with the firm motor, which is useless on a force track."""
     own = c2d.robots.engineer(flippers=None).drivetrain
     rotors = {f"{each:g}": replace(own, rotor_inertia=each) for each in inertias}
     strong = replace(own, rotor_inertia=_FIRM_ROTOR, max_torque=_FIRM_TORQUE)
@@ -162,16 +162,16 @@ def other_cases() -> list[Case]:
 
 
 def highest_edges(asked: Sequence[Case], plan: Plan) -> list[HighestEdge]:
-    """Search for the highest edge that each draw clears, with every drive of every case.
+    """Find the highest edge that each draw clears with every drive of every case.
 
-    The search of a draw starts where that of the drive before ended, and moves away from there in
-    growing steps until one height is cleared and one is not; then it halves what lies between. It
-    supposes that a draw that clears a height clears those below, and may miss narrow gaps.
+    The search for a draw starts where that of the previous drive ended, and moves away in growing
+    steps until one height is cleared and one is not; then it bisects. It assumes that a draw that
+    clears a height clears all lower ones, and may miss narrow gaps.
 
     Raises
     ------
     BatchInterrupted
-        On Ctrl-C; the store keeps what was finished.
+        On Ctrl-C; the store keeps finished runs.
     """
     rows: list[HighestEdge] = []
     draws, cells = _draws(plan), sum(len(case.drives) for case in asked)
@@ -209,7 +209,7 @@ def highest_edges_text(rows: Sequence[HighestEdge]) -> str:
 
 
 def paired_text(rows: Sequence[HighestEdge]) -> str:
-    """Write how often a draw clears more, or less, with each drive than with the first."""
+    """Write how often a draw clears more or less with each drive than with the first."""
     (first, _), *others = group_by(rows, "drive").items()
     lines = []
     for drive, own in others:
@@ -226,7 +226,7 @@ def plot_drive(rows: Sequence[HighestEdge]) -> Figure:
     Parameters
     ----------
     rows : sequence of HighestEdge
-        The drives of each case in one order, which is that of the x axis.
+        The drives of all cases in the same order, which is that of the x axis.
     """
     obstacles, speeds, models, drives = (
         list(group_by(rows, name)) for name in ("obstacle", "speed", "model", "drive")
@@ -263,7 +263,7 @@ def plot_drive(rows: Sequence[HighestEdge]) -> Figure:
 
 
 def _draws(plan: Plan) -> NDArray[np.float64]:
-    """[m] Draw what is added to the approach, and the phase: shape (repeats, 2)."""
+    """[m] Draw changes of approach and phase, shape (repeats, 2)."""
     outline = c2d.robots.engineer().outline
     quarter = 0.125 * outline.axle_distance
     numbers = np.random.default_rng(plan.seed).uniform(size=(plan.repeats, 2))
@@ -285,7 +285,7 @@ def _scenario(case: Case, drivetrain: c2d.Drivetrain) -> c2d.Scenario:
 
 
 def _search(guess: int, reach: int) -> Generator[int, bool, int]:
-    """Ask whether heights are cleared, from a guess on; returns the highest that is."""
+    """Ask whether heights are cleared, starting at a guess; return the highest that is."""
     low, high = 0, _COUNT + 1
     at = min(max(guess, 1), _COUNT)
     while True:
@@ -351,7 +351,7 @@ def _row(case: Case, drive: str, units: Sequence[int], first: Sequence[int]) -> 
 
 
 def _rank(count: int) -> int:
-    """Return which of so many values, from 0, bounds their median from below at 97.5 %."""
+    """Return the index of the sorted value that bounds the median from below at 97.5 %."""
     return max(int(stats.binom.ppf(0.025, count, 0.5)) - 1, 0)
 
 

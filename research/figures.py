@@ -1,4 +1,4 @@
-"""What all figures have in common: panels, legends, rates, and a chart of dots."""
+"""Common parts of figures: panels, legends, rates, and a chart of dots."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ GREY = "#666666"
 def make_panels(
     rows: int, columns: int, size: tuple[float, float], **options: Any
 ) -> tuple[Figure, NDArray[Any]]:
-    """Make a figure of some size [in] with its axes, shape (rows, columns).
+    """Make a figure of a size [in] with its axes, shape (rows, columns).
 
     Raises
     ------
@@ -40,7 +40,7 @@ def add_legend(figure: Figure, ax: Axes, place: str, **more: Any) -> None:
 
 
 def join_legends(figure: Figure, axes: Sequence[Axes]) -> None:
-    """Put one legend below drawings in place of their own, without what each has measured."""
+    """Replace the legends of drawings by a common one below them, without measured values."""
     shown: dict[str, Any] = {}
     for ax in axes:
         for handle, label in zip(*ax.get_legend_handles_labels(), strict=True):
@@ -66,7 +66,7 @@ def draw_rates(ax: Axes, cells: Sequence[Any], *, alpha: float, **line: Any) -> 
 
 
 def save_svg(figure: Figure, path: Path) -> None:
-    """Write a figure as SVG, whose text stays text; equal figures give equal files."""
+    """Write a figure as SVG with text as text; equal figures give equal files."""
     fixed = {"svg.fonttype": "none", "svg.hashsalt": "crawler2d"}
     with extra("matplotlib", "plot").rc_context(fixed):
         figure.savefig(path, metadata={"Date": None})
@@ -77,7 +77,7 @@ def draw_dots(
 ) -> None:
     """Write a chart with a row for each case and a dot for each series, as SVG.
 
-    The first of the `rows`, which are values by series, is on top.
+    `rows` have values by series; the first row is on top.
 
     Examples
     --------

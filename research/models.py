@@ -1,4 +1,4 @@
-"""The robots and the track models of the studies; each model with its source in the paper."""
+"""The robots and track models of the studies, each with its source in the paper."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -10,11 +10,11 @@ from crawler2d.parameters.track import Track
 from research.paper import CWA_GEAR, CWA_ROUND, LWA_GEAR, LWA_ROUND
 
 FRICTION = 0.9
-"""[-] Between track and ground: an estimate, like those of the robot."""
+"""[-] Friction between track and ground: an estimate, like those of the robot."""
 
 
 def study_robot(flippers: c2d.Flippers | Literal["built"] | None = None, **parts: Any) -> c2d.Robot:
-    """Make the robot of the studies: the Engineer without rotors, as models for simulators are.
+    """Make the robot of the studies: the Engineer without rotors, like models for simulators.
 
     Parameters
     ----------
@@ -60,10 +60,10 @@ class StudyModel(NamedTuple):
     row: str | None = None
     """The row of the paper's Table 3 with this kind of model; None if there is none."""
     arms: Track | None = None
-    """The track of the flippers; None takes the model of the robot's."""
+    """The track of the flippers; None takes the model of the robot."""
 
     def on(self, robot: c2d.Robot) -> c2d.Robot:
-        """Put it on a robot, and on its flippers if it has some."""
+        """Put it on a robot, and on its flippers if it has any."""
         arms = None if robot.flippers is None else replace(robot.flippers, track=self.arms)
         return replace(robot, track=self.track, flippers=arms)
 
@@ -71,8 +71,8 @@ class StudyModel(NamedTuple):
 def study_models() -> dict[str, StudyModel]:
     """List the track models of the study by name, in the order of the tables.
 
-    Wheels that touch on the robot, or are placed by hand, have no place on an arm that tapers:
-    there a line of four wheels takes theirs, which is about where four touch.
+    Wheels that touch on the robot, or are placed by hand, do not fit a tapering arm. There they are
+    replaced by a line of four wheels, about the number that touch.
 
     Examples
     --------

@@ -18,12 +18,12 @@ from research.study import Job, Study
 from research.tables import in_mm
 
 _STRONG = "torque doubled"
-"""The other robot whose gear wheels are compared with round ones, too."""
+"""Another robot whose gear wheels are compared with round ones."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Design:
-    """How much is simulated."""
+    """The size of the study."""
 
     heights: Mapping[str, tuple[float, ...]]
     """[m] By obstacle: "step", "barrier", "knife edge"."""
@@ -127,7 +127,7 @@ class Sweeps:
         return self._sweep(base, over, self.design.ride_repeats)
 
     def _flat(self) -> c2d.Scenario:
-        # Ten times the robot's acceleration: steady after 0.2 s, not 2 s.
+        # With ten times the robot's acceleration, the speed is steady after 0.2 s, not 2 s.
         acceleration = 10.0 * self.base.robot.drivetrain.max_acceleration
         ground = c2d.terrains.flat(friction=FRICTION)
         return self.base.replace(
@@ -153,7 +153,7 @@ class Sweeps:
 
 
 def header(sweeps: Sweeps) -> str:
-    """Say what is simulated, what is estimated and what is drawn."""
+    """Describe what is simulated, estimated and drawn."""
     base, design = sweeps.base, sweeps.design
     robot, outline = base.robot, base.robot.outline
     belly = belly_corners(robot.belly)[:, 1]
@@ -230,7 +230,7 @@ def cross_obstacles(sweeps: Sweeps) -> tuple[dict[str, xarray.Dataset], str]:
 def _report_stops(
     job: Job, sweeps: Sweeps, runs: Mapping[str, xarray.Dataset], strong: xarray.Dataset
 ) -> str:
-    """Write why runs stopped, with replays, as tables; returns the text."""
+    """Write tables of why runs stopped, with replays; return the text."""
     endings = [row for name, table in runs.items() for row in stops.stops(table, name)]
     pairs = models.gear_pairs(sweeps.models)
     wheels = [

@@ -99,7 +99,7 @@ class Phase:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Post:
-    """A time span in which the post was between two wheels."""
+    """A period in which the post was between two wheels."""
 
     height: float
     """[m]"""
@@ -107,7 +107,7 @@ class Post:
     """Whether the robot has a belly."""
     outcome: str
     mechanism: str
-    """How the post is held if the run ended in a stop; "" if it did not."""
+    """Mechanism that holds the post; "" if the run did not end in a stop."""
     bodies: str
     """The two wheels, in order of belt travel; wheel 2 is the foremost."""
     start: float
@@ -197,7 +197,7 @@ def phases(table: xarray.Dataset) -> list[Phase]:
 
 
 def write_runs(table: xarray.Dataset, path: Path) -> None:
-    """Write a sweep as CSV, without scenarios: they follow from the seed, and are most of it."""
+    """Write a sweep as CSV without scenarios, which follow from the seed and take most space."""
     table.drop_vars("scenario").to_dataframe().to_csv(path)
 
 
@@ -228,12 +228,12 @@ def public_wheel_model(threads: int | None = None) -> dict[tuple[float, bool], c
 
 
 def posts(runs: Mapping[tuple[float, bool], c2d.Run]) -> list[Post]:
-    """List the time spans in which the post was between two different wheels.
+    """List the periods in which the post was between two different wheels.
 
     Parameters
     ----------
     runs : mapping of (float, bool) to Run
-        What `public_wheel_model` returned.
+        The result of `public_wheel_model`.
 
     Returns
     -------
@@ -299,7 +299,7 @@ def climbs_text(models: Mapping[str, StudyModel], climbs: Sequence[Climb]) -> st
 
 
 def robots_text(cells: Sequence[Cell]) -> str:
-    """Write how other estimates of the robot change the table."""
+    """Write how other estimates for the robot change the table."""
     heights = in_mm(group_by(cells, "height"))
     rows = (
         {"model": model}
@@ -478,7 +478,7 @@ def plot_posts(runs: Mapping[tuple[float, bool], c2d.Run]) -> Figure:
     Parameters
     ----------
     runs : mapping of (float, bool) to Run
-        What `public_wheel_model` returned; runs that cleared are left out.
+        The result of `public_wheel_model`; runs that cleared are left out.
     """
     stuck = {place: run for place, run in runs.items() if run.outcome != "cleared"}
     rows = -(-len(stuck) // 2)

@@ -1,4 +1,4 @@
-"""Studies over steps: chains of shoes, how finely to step them, and the Engineer with flippers."""
+"""Studies over steps: chains of shoes, their accuracy, and the Engineer with flippers."""
 
 from __future__ import annotations
 
@@ -32,29 +32,29 @@ CHAINS_FULL = replace(
 """Steps of 30 to 160 mm."""
 CHAINS_QUICK = replace(seizure.QUICK, heights={"step": (0.06, 0.10)}, repeats=4)
 _TRACKS = 4
-"""How many models the left panel of the figure has."""
+"""Number of models in the left panel of the figure."""
 
 _ACCURACIES = (1e-7, 3e-7, 1e-6, 3e-6, 1e-5)
-"""[m] Of the solver."""
+"""[m] Accuracies of the solver."""
 _CHAIN_HEIGHTS = (0.11,)
-"""[m] Of the steps; the chain of 22 shoes clears about a third of the runs."""
-# [s] Duration of the run on flat ground, and when its speed is steady.
+"""[m] Heights of the steps; the chain of 22 shoes clears about a third of the runs."""
+# [s] Duration of the run on flat ground, and time from which its speed is steady.
 _FLAT, _STEADY = 10.0, 3.0
 
 _FLIPPER_HEIGHTS = tuple(0.02 * step for step in range(2, 21))
 """[m] Of the steps."""
-# Models whose wheels have a size or place given for the robot's outline.
+# Models whose wheels have a size or position that fits only the robot's outline.
 _WITHOUT = ("hybrid", "hybrid gears", "line of 4, touching", "16 all round, spaced")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ChainStep:
-    """How the chain does with one accuracy of the solver."""
+    """Results of the chain with one accuracy of the solver."""
 
     accuracy: float
     """[m]"""
     step: float
-    """[s] Mean length of a step, over all runs over the steps."""
+    """[s] Mean time step of all runs over the steps."""
     flat_gap: float
     """[m] Largest gap of a pin on flat ground."""
     gap: float
@@ -79,13 +79,13 @@ class HighestStep:
     gaps: int
     """Number of lower steps cleared by fewer runs."""
     limit: str
-    """How most of the other runs end at the next step."""
+    """Commonest outcome of the other runs at the next step."""
     paper: float | None
-    """[m] What the paper reports for its models of this kind; None if it has none."""
+    """[m] Value of the paper for models of this kind; None if it has none."""
 
 
 def chain_models() -> Mapping[str, StudyModel]:
-    """List the models that are compared with chains; all have the Engineer's grousers.
+    """List the models to compare with chains, all with the Engineer's grousers.
 
     Returns
     -------
@@ -99,7 +99,7 @@ def chain_models() -> Mapping[str, StudyModel]:
 
 
 def plot_chains(cells: Sequence[Cell]) -> Figure:
-    """Draw the rates with their intervals: all tracks, and the wheels with the first track.
+    """Draw the rates with their intervals: all tracks, then the wheels with the first track.
 
     Parameters
     ----------
@@ -273,7 +273,7 @@ def highest_steps_text(rows: Sequence[HighestStep]) -> str:
 
 
 def _limit(above: xarray.Dataset) -> str:
-    """Say how most runs end that do not clear the first of some heights."""
+    """Return the commonest outcome of runs that do not clear the first of some heights."""
     if not above.sizes["height"]:
         return "none up to here"
     columns = (above[name].isel(height=0).to_numpy().tolist() for name in ("outcome", "mechanism"))

@@ -1,4 +1,4 @@
-"""Why the runs of the seizure study stopped, gear wheels compared with round ones, and replays."""
+"""Why runs of the seizure study stopped, gear wheels compared with round ones, and replays."""
 
 import math
 import re
@@ -40,12 +40,12 @@ _PERCENTS = {
     "friction": "freed_by_friction",
     "no belly": "freed_by_no_belly",
 }
-"""Counts of `Stops` that are written as percentages of the stops, by the words for them."""
+"""Counts of `Stops` that are written as percentages of the stops, by their headings."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Stops:
-    """How the runs of one model on one obstacle ended, all heights together."""
+    """Outcomes of the runs of one model on one obstacle, all heights together."""
 
     obstacle: str
     model: str
@@ -66,13 +66,13 @@ class Stops:
     jammed: int
     """Stops with ground between two bodies of a track bearing on it."""
     unnatural_stops: int
-    """Stops from which a closed track gets free, in their pose or set down clear of the ground."""
+    """Stops from which a closed track gets free, in the same pose or moved clear of the ground."""
     freed_by_torque: int
     """Stops that twice the torque ends."""
     freed_by_friction: int
     """Stops that twice the friction ends."""
     freed_by_no_belly: int
-    """Stops that taking the belly off ends."""
+    """Stops that removing the belly ends."""
     depth: float
     """[m] Median depth of the edges in seized stops, below the circumscribed circles; nan: none."""
     root_depth: float
@@ -88,7 +88,7 @@ class Stops:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WheelRate:
-    """How often something happened to one model of a pair that differs only in its wheels."""
+    """Rate of an event for one model of a pair that differs only in its wheels."""
 
     robot: str
     obstacle: str
@@ -103,7 +103,7 @@ class WheelRate:
     """Runs with a result."""
     rate: float
     low: float
-    """[-] Lower bound of the 95 % interval, of which the repeats are the clusters."""
+    """[-] Lower bound of the 95 % interval, with repeats as clusters."""
     high: float
 
 
@@ -125,7 +125,7 @@ class Replay:
 
 
 class _Place(NamedTuple):
-    """The place of a run in the sweeps."""
+    """The coordinates of a run in the sweeps."""
 
     obstacle: str
     model: str
@@ -133,22 +133,22 @@ class _Place(NamedTuple):
     repeat: int
 
     def of(self, tables: Mapping[str, xarray.Dataset]) -> xarray.Dataset:
-        """Return the run that is there."""
+        """Return the run at these coordinates."""
         where = {"track": self.model, "height": self.height, "repeat": self.repeat}
         return tables[self.obstacle].sel(where)
 
 
 def stops(table: xarray.Dataset, obstacle: str, belt: str = "belt") -> list[Stops]:
-    """Count how the runs of a sweep over track and height ended, one row per model.
+    """Count the outcomes of a sweep over track and height, with one row per model.
 
     Parameters
     ----------
     table : xarray.Dataset
         With the dimensions track, height and repeat, and the trials of `TRIALS`.
     obstacle : str
-        What they ran over.
+        The obstacle.
     belt : str
-        The model that decides whether a pass is natural.
+        The model that decides whether a run clears naturally.
     """
     return [
         _stops(table, obstacle, str(model), belt) for model in table["track"].to_numpy().tolist()
@@ -180,7 +180,8 @@ def compare_wheels(
     list of WheelRate
         Round and gear wheels of each pair, and of all pairs together.
     """
-    # Runs of one repeat share their draws, at all heights and of all models: a cluster.
+    # Runs of one repeat have the same draws at all heights and for all models, so they are a
+    # cluster.
     repeats = [
         {row.model: row for row in stops(table.isel(repeat=[k]), obstacle, belt)}
         for k in range(table.sizes["repeat"])
@@ -216,9 +217,9 @@ def write_replays(
 ) -> list[Replay]:
     """Simulate the clearest runs again, and write each as a page.
 
-    One run for each outcome and mechanism of a stop; and the belt where it cleared what stopped
-    the first of these. The clearest run is one that a closed track is freed from and, among these,
-    the one with the deepest edge.
+    There is one run for each outcome and mechanism of a stop, and the belt where it cleared what
+    stopped the first of these. The clearest run is one from which a closed track gets free and,
+    among these, the one with the deepest edge.
 
     Parameters
     ----------
@@ -258,7 +259,7 @@ def write_replays(
 
 
 def stops_text(stops: Iterable[Stops]) -> str:
-    """Write how the runs of each model ended, and what held those that stopped."""
+    """Write the outcomes of each model, and the mechanisms of stops."""
     rows = (
         {
             "model": row.model,
@@ -375,7 +376,7 @@ def _clearest(tables: Mapping[str, xarray.Dataset]) -> list[_Place]:
             ending = (run["outcome"].item(), run["mechanism"].item())
             freed = any(run[f"freed_by_{short_name(trial)}"].item() for trial in TRIALS[:2])
             clarity = (freed, run["intrusion_depth"].item())
-            # Of equal runs the last: models with wheels come after the mere forces.
+            # The last of equal runs: models with wheels come after force tracks.
             if ending not in best or clarity >= best[ending][0]:
                 where = (run[name].item() for name in ("track", "height", "repeat"))
                 best[ending] = (clarity, _Place(obstacle, *where))

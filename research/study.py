@@ -1,4 +1,4 @@
-"""The shape of a study: its options, and the files that it writes."""
+"""The framework of a study: its options, and the files that it writes."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Job:
-    """A study that was asked for on a command line."""
+    """A study started from a command line."""
 
     options: argparse.Namespace
 
@@ -31,7 +31,7 @@ class Job:
 
     @property
     def full(self) -> bool:
-        """Whether to make all of it."""
+        """Whether to run the full study."""
         return bool(self.options.full)
 
     @property
@@ -40,7 +40,7 @@ class Job:
         return {"seed": self.options.seed, "threads": self.options.threads}
 
     def report(self, name: str, text: str, *printed: str) -> None:
-        """Print a text, and write it as NAME.txt, below what was printed during the runs."""
+        """Print a text, and write it as NAME.txt, after everything printed during the runs."""
         print(f"\n{text}\n")
         whole = "\n\n\n".join((*printed, text))
         (self.out / f"{name}.txt").write_text(f"{whole}\n", encoding="utf-8")
@@ -52,7 +52,7 @@ class Job:
                 write_csv(self.out / f"{name}.csv", rows)
 
     def draw(self, figures: Mapping[str, Callable[[], Figure]], also: Iterable[Path] = ()) -> None:
-        """Draw figures as NAME.png, in other folders as well; without matplotlib say so."""
+        """Draw figures as NAME.png, also in other folders; print a note without matplotlib."""
         try:
             for name, figure in figures.items():
                 drawn = figure()
@@ -67,12 +67,12 @@ class Study:
     """A command of `python -m research`."""
 
     text: str
-    """What it asks."""
+    """Its question."""
     run: Callable[[Job], None]
     full: str | None = "all heights and repeats; minutes"
-    """What `--full` takes; None if there is but one design."""
+    """Size and time of `--full`; None if there is only one design."""
     add_options: Callable[[argparse.ArgumentParser], None] | None = None
-    """Adds what only this study can be asked."""
+    """Adds options of this study."""
 
     def command(self) -> Command:
         """Make its command, which Ctrl-C ends with an exit status of 130."""

@@ -26,7 +26,7 @@ def in_mm(heights: Iterable[float]) -> str:
 
 
 def gaps(heights: Sequence[float]) -> str:
-    """Write heights [m] that were not cleared below one that was, in brackets."""
+    """Write, in brackets, heights [m] that were not cleared below one that was."""
     return f" (not {in_mm(heights)})" if heights else ""
 
 
@@ -71,7 +71,7 @@ def cells_of(table: xarray.Dataset, *dims: str) -> Iterator[dict[str, Any]]:
 def aligned_table(rows: Iterable[Mapping[str, str]], left: Iterable[str] = ()) -> str:
     """Write rows with the same keys as columns.
 
-    The first one and those whose names are in `left` are flush left, others flush right.
+    The first column and those in `left` are aligned to the left, others to the right.
 
     Examples
     --------
@@ -95,7 +95,7 @@ def aligned_table(rows: Iterable[Mapping[str, str]], left: Iterable[str] = ()) -
 
 
 def table(rows: Iterable[Mapping[str, str]]) -> str:
-    """Write rows with the same keys, which are its head, as a table in Markdown.
+    """Write rows with the same keys, which become the head, as a table in Markdown.
 
     Examples
     --------
@@ -124,19 +124,19 @@ def markdown_table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
 
 
 def splice(page: str, parts: Mapping[str, str]) -> str:
-    r"""Put parts between their marks in a page, ``<!-- name -->`` and ``<!-- end of name -->``.
+    r"""Insert parts between their marks in a page, ``<!-- name -->`` and ``<!-- end of name -->``.
 
     Parameters
     ----------
     page : str
-        What is written by hand, with the marks.
+        The page with marks, written by hand.
     parts : mapping of str to str
         Texts by name; those without marks in the page are left out.
 
     Returns
     -------
     str
-        The page with these parts in place of the old ones.
+        The page with these parts instead of the old ones.
 
     Examples
     --------

@@ -20,7 +20,7 @@ from crawler2d.parameters.terrain import Terrain
 from crawler2d.parameters.track import Track
 from research.models import study_models
 
-# What is drawn of each, between which bounds and to how many digits; or a whole number.
+# Drawn fields with their bounds and number of digits; or a range of integers.
 _DRAWN: dict[str, dict[str, tuple[float, float, int] | tuple[int, int]]] = {
     "step": {},
     "barrier": {"thickness": (0.05, 0.3, 3)},
@@ -39,7 +39,7 @@ _ROUNDED = 0.3
 
 
 def draw_obstacle(kind: str, random: np.random.Generator) -> dict[str, Any]:
-    """Draw everything about an obstacle but its height and friction.
+    """Draw everything about an obstacle except its height and friction.
 
     Parameters
     ----------
@@ -94,7 +94,7 @@ def terrain_of(obstacle: Mapping[str, Any], height: float, friction: float) -> T
 
 
 def length_of(obstacle: Mapping[str, Any]) -> float:
-    """[m] About how far the obstacle reaches."""
+    """[m] Return the approximate length of the obstacle."""
     match obstacle["kind"]:
         case "stairs":
             return float((obstacle["count"] - 1) * obstacle["run"])
@@ -107,7 +107,7 @@ def length_of(obstacle: Mapping[str, Any]) -> float:
             return float(obstacle.get("thickness", 0.0))
 
 
-# [m] Axle distance of the Engineer; in a line of four, wheels of a sixth of it touch.
+# [m] Axle distance of the Engineer; in a line of four, wheels with a sixth of it as radius touch.
 _AXLES = 0.365
 _STUDIED = {name: model.track for name, model in study_models().items()}
 _CLOSED = {
@@ -131,20 +131,20 @@ _ENDS: dict[Ends, str] = {"front": "in front", "rear": "behind", "both": "at bot
 
 @dataclass(frozen=True, kw_only=True)
 class Kind:
-    """A kind of robot, of which cells are drawn."""
+    """A kind of robot for which cells are drawn."""
 
     name: str
     model: str
-    """Kinds of one model have one verdict."""
+    """Model; all kinds of a model have a common verdict."""
     track: Track
     sharing: Literal["track", "wheel"] = "track"
     """Whether a track has one motor or each wheel a servo."""
     ends: Ends | None = None
-    """Where flippers are."""
+    """Ends with flippers."""
     gait: Literal["climb", "hold"] | None = None
     obstacles: tuple[str, ...] = ONE_LANE
     heights: tuple[float, float] = (0.01, 0.3)
-    """[m] Between these the search takes place."""
+    """[m] Range of the search."""
 
     def robot(self, center_of_mass: tuple[float, float], max_torque: float) -> Robot:
         """Build the robot.
@@ -211,7 +211,7 @@ def _arms() -> Iterator[Kind]:
 
 
 KINDS = {kind.name: kind for part in (_lines, _closed, _lanes, _chains, _arms) for kind in part()}
-"""All kinds by name, those that cost little first."""
+"""All kinds by name, the fastest first."""
 
 
 FOLDER = Path(__file__).parent / "sets"
@@ -222,26 +222,26 @@ Setting = Mapping[str, Any]
 
 @dataclass(frozen=True, kw_only=True)
 class Cell:
-    """What all runs of a cell have in common."""
+    """Common data of all runs of a cell."""
 
     name: str
     kind: str
     """Name in `KINDS`."""
     center_of_mass: tuple[float, float]
-    """[m] Without flippers."""
+    """[m] Length of the robot without flippers."""
     max_torque: float
     """[N m] Of one sprocket."""
     friction: float
     speed: float
     """[m/s]"""
     obstacle: Mapping[str, Any]
-    """What `draw_obstacle` made."""
+    """The result of `draw_obstacle`."""
     height: float
     """[m] Of the obstacle."""
     duration: float
     """[s] Longest simulated time."""
     hold_angle: float = 0.0
-    """[rad] Of the flippers, for the gait that holds them."""
+    """[rad] Angle of the flippers, for the gait that holds them."""
     found: Mapping[str, Any] = field(default_factory=dict)
     """How the height was found: rate, runs, setting, draws that had no such height."""
 
@@ -274,12 +274,12 @@ class Cell:
 
 
 def path_of(number: int) -> Path:
-    """Where a set is kept; its number is the seed of its draws."""
+    """Return the file of a set, whose number is the seed of its draws."""
     return FOLDER / f"{number}.json"
 
 
 def read(path: Path) -> list[Cell]:
-    """Read a set of cells; a file that is not there has none."""
+    """Read a set of cells, which is empty without a file."""
     if not path.exists():
         return []
     rows = json.loads(path.read_text(encoding="utf-8"))
@@ -287,5 +287,5 @@ def read(path: Path) -> list[Cell]:
 
 
 def write(path: Path, cells: Sequence[Cell]) -> None:
-    """Write a set of cells, one line each; the file is complete at any time."""
+    """Write a set of cells, one per line; the file is complete at any time."""
     write_rows(path, map(asdict, cells))

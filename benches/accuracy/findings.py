@@ -1,6 +1,6 @@
-"""What the stored runs show: paired differences of rates, intervals, tests, and verdicts.
+"""Results of the stored runs: paired differences of rates, intervals, tests and verdicts.
 
-A verdict says whether a difference lies within a bound: of a cell, of a model, of all cells.
+A verdict says whether a difference lies within a bound, for a cell, a model or all cells.
 """
 
 import math
@@ -18,31 +18,31 @@ from crawler2d.sweeps.statistics import Interval, bootstrap_mean, mcnemar
 from research.tables import group_by
 
 LOOKS = (400, 1600)
-"""Runs of a cell at which it gets a verdict; it gets more only while its interval is open."""
+"""Runs of a cell after which it gets a verdict; it gets more only if its interval is open."""
 
 CURVE = 100
-"""Runs of a cell with the settings that only draw the curve of error against cost."""
+"""Runs of a cell with the settings that are used only for the curve of error against cost."""
 
 CELL_BOUND, MODEL_BOUND, MEAN_BOUND = 0.08, 0.05, 0.02
-"""[-] Differences of rates that are small enough: of a cell, of a model, of the mean."""
+"""[-] Largest acceptable differences of rates: for a cell, a model and the mean."""
 
 CELL_CONFIDENCE, CONFIDENCE = 0.90, 0.95
-"""[-] Of a cell, over all its looks together; of models and of the mean."""
+"""[-] Confidence for a cell, over all its checks together, and for models and the mean."""
 
 Verdict = Literal["inside", "outside", "open"]
 
-# [-] From this share of the pairs that would differ if runs were drawn anew, a cell is chaotic.
+# [-] A cell is chaotic if pairs differ in at least this fraction of the cases of new draws.
 _CHAOTIC = 0.5
 
 
 class Pairs(NamedTuple):
-    """How many pairs of runs with equal draws cleared in which way."""
+    """Numbers of pairs of runs with equal draws in which both, one or none cleared."""
 
     both: int
     only: int
-    """Only the one with the setting."""
+    """Only the run with the setting cleared."""
     reference: int
-    """Only the one with the reference."""
+    """Only the run with the reference cleared."""
     neither: int
 
     @property
@@ -52,22 +52,22 @@ class Pairs(NamedTuple):
 
     @property
     def difference(self) -> float:
-        """[-] Rate of the setting less that of the reference."""
+        """[-] Rate of the setting minus that of the reference."""
         return (self.only - self.reference) / self.runs
 
     @property
     def by_chance(self) -> float:
-        """[-] Mean size that the difference would have if the rates were equal."""
+        """[-] Mean size of the difference if the rates were equal."""
         return math.sqrt(2.0 / math.pi * (self.only + self.reference)) / self.runs
 
     @property
     def p_value(self) -> float:
-        """[-] Of the hypothesis of equal rates, McNemar's exact test."""
+        """[-] p-value of the hypothesis of equal rates, by McNemar's exact test."""
         return mcnemar(self.only, self.reference)
 
     @property
     def is_chaotic(self) -> bool:
-        """Whether pairs differ in both directions, almost as often as if drawn anew.
+        """Whether pairs differ in both directions, almost as often as with new draws.
 
         Where all differ in one direction, the rate has moved, but the runs are not chaotic.
         """
@@ -81,7 +81,7 @@ class Pairs(NamedTuple):
 
 
 def pair(rows: Mapping[int, Row], reference: Mapping[int, Row]) -> Pairs:
-    """Count the repeats that both have; a run without a result has not cleared."""
+    """Count the common repeats; a run without a result counts as not cleared."""
     shared = rows.keys() & reference.keys()
     counts = Counter((_cleared(rows[each]), _cleared(reference[each])) for each in shared)
     return Pairs(*(counts[ours, theirs] for ours, theirs in product((True, False), repeat=2)))
@@ -103,10 +103,10 @@ def path_error(rows: Mapping[int, Row], reference: Mapping[int, Row], speed: flo
 
 
 def cell_interval(pairs: Pairs, looks: int) -> Interval:
-    """Interval of a cell that may be looked at several times.
+    """Interval of a cell that may be checked several times.
 
-    Each look gets its share of the error, so that all intervals of a cell together hold with
-    `CELL_CONFIDENCE`, whenever the looking ended.
+    Each check gets its part of the error, so that all intervals of a cell together hold with
+    `CELL_CONFIDENCE`, whenever the checks end.
     """
     return pairs.interval(1.0 - (1.0 - CELL_CONFIDENCE) / looks)
 
@@ -160,14 +160,14 @@ class Figures(NamedTuple):
 
     runs: int
     failed: int
-    """Those without a result; they count as not cleared."""
+    """Runs without a result; they count as not cleared."""
     rate: float
     cost: float
     """[-] Processor time per simulated time."""
     processor: float
     """[s] Processor time of all runs."""
     pairs: Pairs
-    """With the runs of the reference."""
+    """Comparison with the runs of the reference."""
     path: float
     """[m] See `path_error`."""
 
@@ -178,17 +178,17 @@ class Finding(NamedTuple):
     cell: Cell
     by_setting: dict[str, Figures]
     is_chaotic: bool
-    """Whether the last setting before the reference differs from it as new draws would."""
+    """Whether the last setting before the reference differs from it as much as new draws."""
 
 
 class Study(NamedTuple):
-    """What the page is made of."""
+    """The data of the page."""
 
     number: int
-    """Of the set of cells."""
+    """Number of the set of cells."""
     findings: list[Finding]
     settings: Mapping[str, Setting]
-    """By name, the finest last."""
+    """Settings by name, the finest last."""
     reference: str
     """Name of the setting that the others are compared with, the finest."""
     default: str
@@ -205,7 +205,7 @@ class Study(NamedTuple):
 def collect(
     store: Store, cells: Sequence[Cell], settings: Mapping[str, Setting], reference: str
 ) -> list[Finding]:
-    """Read the runs of each cell that has some of the reference."""
+    """Read the runs of each cell that has runs with the reference."""
     found = []
     for cell in cells:
         rows = {name: store.rows(cell, setting) for name, setting in settings.items()}
@@ -244,11 +244,11 @@ class CellVerdict(NamedTuple):
     interval: Interval
     verdict: Verdict
     p_value: float
-    """Corrected for the number of looks and of cells."""
+    """p-value, corrected for the number of checks and of cells."""
 
     @property
     def cell(self) -> Cell:
-        """What it is about."""
+        """Its subject."""
         return self.finding.cell
 
 
@@ -276,14 +276,14 @@ def models(cells: Sequence[OfCell]) -> dict[str, list[OfCell]]:
 
 
 def model_difference(cells: Sequence[CellVerdict]) -> Interval:
-    """Estimate the mean difference of a model's cells; the cells themselves count as given."""
+    """Estimate the mean difference of a model's cells, which are taken as given."""
     return mean([each.figures.pairs.interval(CONFIDENCE) for each in cells])
 
 
 def mean_difference(study: Study, setting: str) -> Interval:
     """Estimate the mean difference over all cells.
 
-    The wider of two intervals counts at each end: that of the given cells, whose runs vary, and
+    At each end, the wider of two intervals counts: that of the given cells, whose runs vary, and
     the bootstrap over cells, which were drawn themselves.
     """
     own = [each.by_setting[setting].pairs for each in study.findings if setting in each.by_setting]

@@ -28,7 +28,7 @@ class _Family(NamedTuple):
     title: str
     style: dict[str, Any]
     side: Literal["left", "right"]
-    """Where the settings' names are, seen from their points."""
+    """Position of the settings' names relative to their points."""
 
 
 _FAMILIES = (
@@ -49,7 +49,7 @@ class Point(NamedTuple):
     low: float
     high: float
     chance: float
-    """What the error would be if all rates were equal; NaN for paths."""
+    """Error if all rates were equal; NaN for paths."""
 
 
 _Points = Callable[[Sequence[Finding], str], Iterator[Point]]
@@ -86,7 +86,7 @@ def _models(study: Study, name: str) -> Figure:
     for ax, (model, own) in zip(grid.flat, groups.items(), strict=False):
         _panel(ax, study, own, name, is_named=False)
         ax.set_title(f"{model} ({len(own)})", fontsize="medium")
-    # Panels above an empty place have no panel below them that shows the costs.
+    # Panels above an empty place have no panel below that shows the costs.
     for ax in grid.flat[max(0, len(groups) - _COLUMNS) : len(groups)]:
         ax.tick_params(labelbottom=True)
     if name == "rates":
@@ -114,7 +114,7 @@ def _panel(
             if is_named:
                 _name(ax, point, family.side)
     if is_named:
-        # Room for the names.
+        # Space for the names.
         ax.margins(x=0.2)
     ax.set_xscale("log")
     if name == "paths":
@@ -163,7 +163,7 @@ def _cost(findings: Sequence[Finding], setting: str) -> float:
 def _curve(ax: Axes, points: Sequence[Point], family: _Family) -> None:
     costs = [point.cost for point in points]
     errors = [point.error for point in points]
-    # Of a single cell there is no interval.
+    # A single cell has no interval.
     sides = [
         [min(max(point.error - point.low, 0.0), point.error) for point in points],
         [point.high - point.error if math.isfinite(point.high) else 0.0 for point in points],

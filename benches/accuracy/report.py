@@ -118,7 +118,7 @@ def _settings(study: Study) -> str:
             continue
         found, size = mean_difference(study, name), size_of_difference(own, name)
         chance = sum(each.by_setting[name].pairs.by_chance for each in own) / len(own)
-        # One look for all: these cells are only counted.
+        # One check for all, as these cells are only counted.
         intervals = [cell_interval(each.by_setting[name].pairs, 1) for each in own]
         beyond = sum(verdict_of(interval, CELL_BOUND) == "outside" for interval in intervals)
         cost = median(each.by_setting[name].cost for each in own)

@@ -1,4 +1,4 @@
-"""The runs: planned as `crawler2d.sweep` plans them, stored in SQLite, run where they are missing.
+"""The runs: planned like those of `crawler2d.sweep`, stored in SQLite, and run if missing.
 
 All settings of the solver have the same draws. Nothing is lost on Ctrl-C, and no run is repeated.
 """
@@ -29,7 +29,7 @@ FAILED = "failed"
 
 
 class Row(NamedTuple):
-    """What is kept of a run."""
+    """The stored data of a run."""
 
     repeat: int
     outcome: str
@@ -56,7 +56,7 @@ class Interrupted(KeyboardInterrupt):
 
 
 def plan(cell: Cell, setting: Setting, count: int, seed: int) -> list[PreparedScenario]:
-    """Draw the first runs of a cell, as a sweep does."""
+    """Draw the first runs of a cell, like a sweep."""
     base = cell.scenario(setting)
     planner = Planner(Variation.read(base, None, ()), Variation({}), seed)
     (plan,) = plan_runs(base, (), planner, repeats=count)
@@ -102,7 +102,7 @@ def simulate(
 
 
 def _rows(repeats: Sequence[int], runs: Sequence[SweepRow], spent: float) -> list[Row]:
-    """Return what is stored; the processor time of the batch is split by wall time."""
+    """Return the data to store; the processor time of the batch is split by wall time."""
     total = sum(run.wall_time for run in runs if run.error is None)
     rows = []
     for repeat, run in zip(repeats, runs, strict=True):
@@ -162,7 +162,7 @@ class Store:
             return {row[0]: Row(*row) for row in found}
 
     def add(self, cell: Cell, setting: Setting, rows: Iterable[Row]) -> None:
-        """Keep finished runs, all of them or none."""
+        """Store finished runs, all of them or none."""
         place = (self._build, key(cell), cell.name, _text(setting))
         with self._file as transaction:
             transaction.executemany(
@@ -178,7 +178,7 @@ class Store:
 
 
 def key(cell: Cell) -> str:
-    """Return a hash of all that the runs of a cell depend on."""
+    """Return a hash of everything on which the runs of a cell depend."""
     fields = {name: value for name, value in asdict(cell).items() if name != "found"}
     return hashlib.sha256(_text(fields).encode()).hexdigest()[:16]
 

@@ -1,4 +1,4 @@
-"""Draw cells, and search the height of each: first at a coarse setting, then at a fine one."""
+"""Draw cells, and search for the height of each, first with a coarse setting, then a fine one."""
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
@@ -12,20 +12,20 @@ from benches.accuracy.runs import plan, simulate
 from benches.shared.results import progress
 
 RATES = (0.15, 0.85)
-"""[-] Rates of clearing of a cell, as the search sees them."""
+"""[-] Range of the rate of clearing that the search accepts."""
 DRAWS = 12
-"""Draws of a kind, before it counts as one without such a height."""
+"""Number of draws of a kind before it counts as one without such a height."""
 
 # Settings of the search: while it is coarse, and to confirm.
 _COARSE: Setting = {"accuracy": 1e-6}
 _CONFIRM: Setting = {"accuracy": 3e-7}
-# Runs per height, and those after which a height with equal outcomes is given up.
+# Runs per height, and number of equal outcomes after which a height is given up.
 _RUNS = 40
 _COARSE_RUNS = 24
 _FIRST = 8
 # [m] Heights are whole multiples of this.
 _GRID = 1e-4
-# [-] Share of the coarse height, above and below, within which the fine one is looked for.
+# [-] Range of the fine search above and below the coarse height, as a fraction of it.
 _NEAR = 0.15
 _LOOKS = 11
 
@@ -62,7 +62,7 @@ def draw(name: str, seed: int, attempt: int) -> Cell:
 
 
 def _duration(kind: Kind, speed: float, obstacle: Mapping[str, Any]) -> float:
-    """[s] Twice what an unhindered robot takes, with seconds to start, to stop and to move arms."""
+    """[s] Twice the time of an unhindered robot, plus time to start, to stop and to move arms."""
     way = 0.7 + length_of(obstacle)
     return float(round(5.0 + (5.0 if kind.ends else 0.0) + 2.0 * way / speed))
 
@@ -103,9 +103,9 @@ def find_height(cell: Cell, threads: int | None) -> Cell | None:
 
 
 def bisect(rate: Callable[[float], float], low: float, high: float) -> tuple[float, float] | None:
-    """Halve the interval until the rate in its middle is one in between.
+    """Bisect until the rate in the middle of the interval is accepted.
 
-    Rates need not fall with the height; where they do not, halving finds one of the places.
+    Rates need not decrease with the height; if they do not, bisection finds one of several heights.
     """
     for _ in range(_LOOKS):
         height = round(round(0.5 * (low + high) / _GRID) * _GRID, 6)
@@ -122,8 +122,9 @@ def bisect(rate: Callable[[float], float], low: float, high: float) -> tuple[flo
 
 
 def _rate(cell: Cell, setting: Setting, count: int, threads: int | None) -> tuple[float, int]:
-    """Rate of clearing, and the number of runs; few if all of the first end alike."""
-    # Not the draws of the study: a cell that was found by chance must not keep that chance.
+    """Return the rate of clearing and the number of runs, which is small if the first end alike."""
+    # Other draws than those of the study, in which a cell found by chance must not have the same
+    # luck.
     planned = plan(cell, setting, count, cell.seed + 1)
     cleared: list[bool] = []
     for part in filter(None, (range(min(_FIRST, count)), range(_FIRST, count))):

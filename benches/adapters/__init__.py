@@ -1,1 +1,1 @@
-"""One adapter for each physics engine, and what the adapters are given."""
+"""One adapter for each physics engine, and the input of the adapters."""

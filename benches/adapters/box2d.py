@@ -58,7 +58,7 @@ class Box2D(SteppedEngine):
 
 
 def _build(scene: Scene, setting: Setting) -> tuple[pyb2d3.World, list[pyb2d3.Body]]:
-    # Global to the process: no two worlds of different settings may live at once.
+    # Global to the process: worlds with different settings cannot exist at the same time.
     pyb2d3.set_length_units_per_meter(0.1 if setting.tuned else 1.0)
     unit = _unit(setting)
     world = pyb2d3.World(gravity=(0.0, -9.81 * unit**2))

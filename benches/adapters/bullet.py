@@ -161,7 +161,7 @@ class BulletWorld(World):
         self._call("resetBasePositionAndOrientation", self._body, middle, turned)
 
     def resolve_overlap(self) -> tuple[float, float]:
-        """[m] Move the robot forward and up until it overlaps no ground; return how far.
+        """[m] Move the robot forward and up until it overlaps no ground; return the distance.
 
         It moves the shortest distance out of the deepest overlap, again and again.
         """
@@ -177,7 +177,7 @@ class BulletWorld(World):
             self._call("resetBasePositionAndOrientation", self._body, place, turn)
 
     def _closest(self) -> Iterator[Any]:
-        """Yield where ground and robot touch, item 7 being the normal and item 8 the distance."""
+        """Yield contacts of ground and robot; item 7 is the normal and item 8 the distance."""
         for block in self._ground:
             yield from self._call("getClosestPoints", self._body, block, 0.0)
 
@@ -222,5 +222,5 @@ class BulletWorld(World):
         )
 
     def close(self) -> None:
-        """Free what the world occupies."""
+        """Free the resources of the world."""
         pybullet.disconnect(self._client)

@@ -1,4 +1,4 @@
-"""Chipmunk through pymunk: scenes in the plane, robots of space in side view, chains of shoes.
+"""Chipmunk through pymunk: plane scenes, robots from space in side view, and chains of shoes.
 
 Chipmunk's lengths are meant to be pixels: its slop of 0.1 would let a robot sink by 0.1 m. The
 defaults of `Pymunk` are Chipmunk's for a metre of 100 pixels, which only scales the slop. The tuned
@@ -106,7 +106,7 @@ class Plane:
         return motor
 
     def steps(self, time_step: float) -> Callable[[int], None]:
-        """Return what takes a number of steps."""
+        """Return a function that takes a number of steps."""
         step = self.space.step
 
         def advance(count: int) -> None:
@@ -163,7 +163,7 @@ _SIDES = 2.0
 
 @dataclass(frozen=True, kw_only=True)
 class Chipmunk:
-    """Chipmunk for robots of space: the same bodies in the plane, both sides as one.
+    """Chipmunk for robots from space: the same bodies in the plane, both sides as one.
 
     One motor a track is a motor on the first wheel, and gears from each wheel to the next.
 
@@ -271,14 +271,14 @@ _CHAIN_MEETS = {
 
 @dataclass(frozen=True)
 class Chain:
-    """A robot on a chain of shoes: what takes steps, the chassis and the shoes."""
+    """A robot on a chain of shoes: its step function, chassis and shoes."""
 
     advance: Callable[[int], None]
     chassis: pymunk.Body
     shoes: list[pymunk.Body]
 
     def position(self) -> tuple[float, float]:
-        """[m] Return the place of the chassis."""
+        """[m] Return the position of the chassis."""
         x, y = self.chassis.position
         return x, y
 

@@ -1,4 +1,4 @@
-"""The ground in three dimensions, as boxes; those under one track and turned ones among them."""
+"""The ground in three dimensions as boxes, also under one track only, or turned."""
 
 import math
 from collections.abc import Sequence

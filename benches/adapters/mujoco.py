@@ -75,7 +75,7 @@ def build(scene: Scene, setting: Setting) -> tuple[mujoco.MjModel, mujoco.MjData
     option = spec.option
     option.timestep, option.iterations = setting.time_step, setting.iterations
     option.gravity = (0.0, 0.0, -9.81)
-    # A diverging run must show it, not restart.
+    # A diverging run must be visible, not restart.
     option.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET
     option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
     if setting.tuned:

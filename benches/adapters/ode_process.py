@@ -1,4 +1,4 @@
-"""Open Dynamics Engine: its quick step, whose friction is a pyramid, in a process of its own.
+"""Open Dynamics Engine in a separate process: its quick step, with a friction pyramid.
 
 ODE reads no model files: it gets the rigid bodies of a robot, flippers as parts of the chassis.
 """

@@ -1,7 +1,7 @@
-"""Open Dynamics Engine in a process of its own: JSON lines in, JSON lines out.
+"""Open Dynamics Engine in a separate process: JSON lines in, JSON lines out.
 
-It needs the module `ode` and the standard library alone, so that any interpreter runs it that has
-ODE: Debian builds it for the system's Python only. The constants of that module are older than the
+It needs only the module `ode` and the standard library, so that any interpreter that has ODE runs
+it: Debian builds it only for the system's Python. The constants of that module are older than the
 library under it, so the library's own are here (`ode/common.h`, `ode/contact.h` of ODE 0.16).
 """
 
@@ -90,7 +90,7 @@ class World:
         self.motors.append((hinge, data["radius"]))
 
     def _placed(self, point: list[float]) -> list[float]:
-        """[m] Return where a point of the chassis frame is at the start."""
+        """[m] Return the initial position of a point of the chassis frame."""
         turned = _turned(point, [0.0, 0.0, 0.0], -self.angle)
         return [a + b for a, b in zip(self.start, turned, strict=True)]
 
@@ -123,7 +123,7 @@ class World:
                     self.touches.append({"link": name, "point": point, "normal": normal})
 
     def pose(self) -> dict[str, list[float]]:
-        """Return where the chassis frame is, and how it is turned, row by row."""
+        """Return the position of the chassis frame, and its rotation row by row."""
         chassis = self.bodies[0]
         place, turn = chassis.getPosition(), chassis.getRotation()
         rows = [turn[0:3], turn[3:6], turn[6:9]]
@@ -149,7 +149,7 @@ def _turned(point: list[float], axle: list[float], angle: float) -> list[float]:
 
 def main() -> None:
     """Answer every line until there are no more."""
-    signal.signal(signal.SIGINT, signal.SIG_DFL)  # whoever asks says what Ctrl-C means
+    signal.signal(signal.SIGINT, signal.SIG_DFL)  # the parent process handles Ctrl-C
     world: World | None = None
     for line in sys.stdin:
         message = json.loads(line)

@@ -30,7 +30,7 @@ class Crawler2D:
     name = "crawler2d"
     version = c2d.__version__
     defaults = Setting(accuracy=Solver().accuracy or 0.0, tuned=False)
-    # The defaults in every scene: users should not have to search for a setting.
+    # The defaults in every scene, because users should not have to search for a setting.
     grid: Sequence[Setting] = [defaults]
     finest = Setting(accuracy=1e-8)
     next_finest = Setting(accuracy=4e-8)

@@ -1,4 +1,4 @@
-"""Scenes in the plane that depend on no engine, what an engine does with them, and its motion."""
+"""Scenes in the plane that depend on no engine, the interface of engines, and their motion."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ SCENES = tuple(
 """Names of the scenes in the folder."""
 
 _DURATIONS = {"step": 10.0, "field": 15.0}  # [s] 1.1 m or 5.0 m at 0.4 m/s, and some more
-_HIGHEST = 0.6  # [m] above all ground, more than the robot standing on its end
+_HIGHEST = 0.6  # [m] above all ground, more than a robot standing on its end
 _RASTER = 0.02  # [s] interval at which paths are compared
 
 
@@ -204,7 +204,7 @@ class Scene:
         return float(self.profile()[-2, 0]) - rear
 
     def keeps_course(self, motion: Motion) -> bool:
-        """Whether the chassis stayed where a driving robot can be; False if not finite."""
+        """Whether the chassis stayed at plausible positions; False if not finite."""
         profile = self.profile()
         x, y = motion.poses[:, 0, 0], motion.poses[:, 0, 1]
         is_over_ground = (x > profile[0, 0]) & (x < profile[-1, 0])
@@ -253,7 +253,7 @@ def _joint(data: dict[str, Any]) -> Joint:
 
 @dataclass(frozen=True)
 class Setting:
-    """How finely an engine steps.
+    """Time step and iterations of an engine.
 
     Attributes
     ----------
@@ -307,7 +307,7 @@ class Engine(Protocol):
     version: str
     """Installed version."""
     defaults: Setting
-    """Settings of the engine's own documentation or examples."""
+    """Settings from the engine's documentation or examples."""
     grid: Sequence[Setting]
     """Settings that the search for equal accuracy tries."""
     finest: Setting
@@ -323,15 +323,15 @@ class Engine(Protocol):
 
 
 Started = tuple[Callable[[int], object], Callable[[], Any]]
-"""A world: what takes a number of steps, and what reads all poses."""
+"""A world: a function that takes a number of steps, and one that reads all poses."""
 
 
 class SteppedEngine(ABC):
-    """An engine whose steps have a given length."""
+    """An engine with a given time step."""
 
     @abstractmethod
     def start(self, scene: Scene, setting: Setting) -> Started:
-        """Build a world; return what takes a number of steps, and what reads all poses."""
+        """Build a world; return functions that take a number of steps, and that read all poses."""
 
     def wall_time(self, scene: Scene, setting: Setting, duration: float) -> float:
         """[s] Time a run."""

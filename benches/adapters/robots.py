@@ -124,7 +124,7 @@ class RobotModel:
 
 
 def model_of_robot(robot: Robot) -> RobotModel:
-    """Return a robot as its model file in URDF has it.
+    """Return a robot as in its URDF.
 
     With one motor a track, each wheel of an engine without gears has all of its torque.
 
@@ -163,7 +163,7 @@ def model_of_robot(robot: Robot) -> RobotModel:
 
 
 def cleaned(text: str) -> str:
-    """Remove from a file what no engine needs to drive: visuals, sensors, plugins, meshes.
+    """Remove parts of a file that no engine needs for driving: visuals, sensors, plugins, meshes.
 
     Joints of links that are not in the file are removed, too, and SDF gets the zeros for missing
     damping that Bullet's reader asks for. All masses, shapes but meshes, joints and their places

@@ -1,4 +1,4 @@
-"""Engines in three dimensions, and Chipmunk in their side view: worlds, and a run by one rule."""
+"""Engines in three dimensions, and Chipmunk in side view: worlds, and runs with common rules."""
 
 import math
 import time
@@ -16,7 +16,7 @@ from crawler2d import Scenario
 from crawler2d.model_tree import Array, Pose, from_rpy
 from crawler2d.parameters.terrain import Lanes
 
-_LOOK = 0.01  # [s] between two looks at a run
+_LOOK = 0.01  # [s] between two checks of a run
 _CLEAR_ANGLE, _CLEAR_TIME = math.radians(5.0), 0.5  # as in crawler2d, criteria
 _NO_ADVANCE, _STOP_TIME = 0.005, 3.0  # [m], [s]
 _TIPPED, _TURNED = math.radians(90.0), math.radians(45.0)
@@ -24,7 +24,7 @@ _TIPPED, _TURNED = math.radians(90.0), math.radians(45.0)
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Scene:
-    """What a world is built of.
+    """The input for building a world.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ class Scene:
     phase: float
 
     def root(self) -> Array:
-        """[m] Return where the frame of the model is."""
+        """[m] Return the position of the model's frame."""
         turn = from_rpy((0.0, -self.angle, 0.0)).turn
         place: Array = np.array([self.x, 0.0, self.z]) - turn @ self.robot.origin
         return place
@@ -75,7 +75,7 @@ class Touch:
     force: float
 
     def rounded(self) -> dict[str, Any]:
-        """Return it as data, with few digits."""
+        """Return it as plain data, with few digits."""
         return {
             "link": self.link,
             "point": [round(each, 4) for each in self.point],
@@ -104,7 +104,7 @@ class World(ABC):
         return 0.0
 
     def close(self) -> None:  # noqa: B027 - most engines have nothing to free
-        """Free what the world occupies."""
+        """Free the resources of the world."""
 
 
 class Engine(Protocol):
@@ -155,7 +155,7 @@ _ORIGIN = Pose()
 def check(
     robot: RobotModel, mass: float, axles: Mapping[str, Sequence[float]], frame: Pose = _ORIGIN
 ) -> None:
-    """Compare what an engine has loaded with the model.
+    """Compare the robot that an engine has loaded with the model.
 
     Parameters
     ----------
@@ -176,7 +176,7 @@ def check(
     if abs(mass - robot.mass) > 1e-5 * robot.mass:
         raise ValueError(f"{robot.file}: {mass:g} kg were loaded, the robot has {robot.mass:g}")
     for wheel in robot.wheels:
-        # Where along its axle the frame of a wheel lies is free.
+        # The position of a wheel's frame along its axle is arbitrary.
         x, _, z = (np.asarray(axles[wheel.link]) - frame.place).dot(frame.turn)
         off = max(abs(wheel.axle[0] - x), abs(wheel.axle[2] - z))
         if off > 1e-5:
@@ -185,7 +185,7 @@ def check(
 
 @dataclass(slots=True)
 class Verdict:
-    """Watch a run, and say when and how it ends.
+    """Monitor a run, and decide when and how it ends.
 
     *cleared*: the rear end axle is its radius past the goal, as in crawler2d, and the chassis level
     within 5 degrees, both for 0.5 s. *stopped*: for 3 s it has advanced by less than 5 mm beyond
@@ -243,7 +243,7 @@ class Verdict:
 
 
 def scene_of(scenario: Scenario, robot: RobotModel | None = None) -> Scene:
-    """Return what an engine builds: the robot level, its lowest wheel on the ground.
+    """Return the input for an engine: the robot level, with its lowest wheel on the ground.
 
     Parameters
     ----------

@@ -1,1 +1,1 @@
-"""How well crawler2d's own dynamics and rapier's agree, on random robots."""
+"""Agreement of crawler2d's own dynamics and rapier's on random robots."""

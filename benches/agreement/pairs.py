@@ -1,4 +1,4 @@
-"""Pairs of runs of random robots in both engines, and in Chipmunk where their ends differ."""
+"""Pairs of runs of random robots in both engines, and in Chipmunk if their ends differ."""
 
 import math
 import warnings
@@ -25,7 +25,7 @@ unlike radii; a force along the chassis on free wheels."""
 
 
 def random_scenario(number: int) -> tuple[str, Scenario]:
-    """Draw a robot and an obstacle that rapier holds; the same number gives the same ones.
+    """Draw a robot and an obstacle that rapier can represent; the same number gives the same ones.
 
     The models take turns. Masses are 5 to 80 kg, axle distances 0.25 to 0.8 m, radii 0.12 to 0.24
     of these; obstacles are steps, barriers and ridges of 0.2 to 1.2 radii, friction 0.4 to 1.0.
@@ -118,7 +118,7 @@ def run(robots: int, path: Path) -> None:
 
 
 def _pair(number: int) -> dict[str, Any]:
-    """Run a pair; one with unequal ends is run again, finer."""
+    """Run a pair; if the ends differ, run it again, finer."""
     model, scenario = random_scenario(number)
     with warnings.catch_warnings(action="ignore", category=c2d.ScenarioWarning):
         check = c2d.simulate(scenario, record="summary", trials=None).cross_check()
@@ -146,7 +146,7 @@ def _end(run: Run) -> dict[str, Any]:
 
 
 def finer(scenario: Scenario) -> dict[str, str]:
-    """Return how a scenario ends in each engine, finer."""
+    """Return the end of a scenario in each engine with finer settings."""
     solved = {name: scenario.replace({"solver": solver}) for name, solver in _FINER.items()}
     return {
         name: str(c2d.simulate(each, record="summary", trials=None).outcome)
@@ -155,12 +155,12 @@ def finer(scenario: Scenario) -> dict[str, str]:
 
 
 def held(balances: Iterable[Balance | None]) -> list[bool | None]:
-    """Return which of the stops, where there are some, are equilibria."""
+    """Return which of the stops, if any, are equilibria."""
     return [None if balance is None else balance.holds for balance in balances]
 
 
 def told(held: Iterable[bool | None]) -> str:
-    """Write what `held` returned."""
+    """Write the result of `held`."""
     return ", ".join("yes" if holds else "no" for holds in held if holds is not None)
 
 
@@ -169,7 +169,7 @@ _CHIPMUNK = {"time_step": 5e-5, "iterations": 100}
 
 
 def run_third(pairs: Path, path: Path) -> None:
-    """Run pairs with unequal ends in Chipmunk, except those that are there."""
+    """Run pairs with different ends in Chipmunk, except those that exist."""
     results = Results(path)
     for number in (pair["number"] for pair in read_pairs(pairs) if "finer" in pair):
         if str(number) not in results.data:
@@ -185,7 +185,7 @@ def read_pairs(path: Path) -> list[dict[str, Any]]:
 
 
 def in_chipmunk(scenario: Scenario) -> str:
-    """Return how a scenario ends in Chipmunk, finely."""
+    """Return the end of a scenario in Chipmunk with fine steps."""
     try:
         return str(drive(load("Chipmunk", **_CHIPMUNK), scenario)["end"])
     except ScenarioError:  # a ridge, which is not drawn there

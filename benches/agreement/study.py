@@ -88,14 +88,14 @@ def _cells(obstacle: str, table: Any) -> list[dict[str, Any]]:
 
 
 def study_table(found: list[Any]) -> str:
-    """Write how runs ended alike, and how far stops are apart, by model."""
+    """Write by model how many runs ended alike, and the distances of stops."""
     cells = [cell for part in found for cell in part]
     groups = group_by(cells, "model") | {"all": cells}
     return table(_study_row(*group) for group in groups.items())
 
 
 def study_percentages(cells: list[dict[str, Any]]) -> dict[str, dict[str, float]]:
-    """Return by model in how many runs [%] each engine gets over, and how many end alike."""
+    """Return by model the fraction of runs [%] that clear in each engine, and that end alike."""
     found = {}
     for model, mine in group_by(cells, "model").items():
         own, other = (
@@ -131,7 +131,7 @@ def _study_row(name: str, cells: list[dict[str, Any]]) -> dict[str, str]:
 
 
 def one_by_one(study: Path, path: Path) -> None:
-    """Repeat the runs of lines of round wheels whose ends differ, one by one, also finer."""
+    """Repeat runs of lines of round wheels whose ends differ, one by one, also with finer steps."""
     results = Results(path, [])
     results.data = []
     results.save()
@@ -156,7 +156,7 @@ def _is_round_line(model: str) -> bool:
 
 
 def _draws(base: Scenario, height: float, repeats: int) -> dict[str, list[float]]:
-    """Return what a sweep draws, by path: it depends on the repeat alone."""
+    """Return the draws of a sweep by path; they depend only on the repeat."""
     table = c2d.sweep(base, {"terrain.height": [height]}, repeats=repeats)
     drawn = [column for name, column in table.data_vars.items() if str(name).startswith("drawn_")]
     return {column.attrs["path"]: column.values.ravel().tolist() for column in drawn}
@@ -177,7 +177,7 @@ def _again(cell: dict[str, Any], number: int, scenario: Scenario) -> dict[str, A
 
 
 def one_by_one_table(found: list[Any]) -> str:
-    """Write these runs, one a row."""
+    """Write these runs, one per row."""
     head = (
         *("model", "obstacle", "mm", "own", "own, finer", "own, steps of 0.05 ms", "rapier"),
         *("rapier, finer", "Chipmunk", "the stop is an equilibrium"),
@@ -232,9 +232,9 @@ _PITCH = 0.048  # [m] of the Engineer's grousers
 
 
 def ensembles(starts: int, study: Path, path: Path) -> None:
-    """Run cells with unequal ends from starts that are spread evenly over a grouser pitch.
+    """Run cells with different ends from starts spread evenly over a grouser pitch.
 
-    Nothing else is drawn: the pairs differ by how the robot meets the edge.
+    Nothing else is drawn, so the pairs differ only in how the robot meets the edge.
     """
     results = Results(path, [])
     there = [_key(each) for each in results.data]
@@ -263,7 +263,7 @@ def _has_unequal_ends(cell: dict[str, Any]) -> bool:
 
 
 def ensembles_table(found: list[Any]) -> str:
-    """Write how many runs of each cell get over, and how far the rates are apart."""
+    """Write how many runs of each cell clear, and the differences of the rates."""
     return table(
         {
             "model": cell["model"],
@@ -282,7 +282,7 @@ def ensembles_table(found: list[Any]) -> str:
 
 
 def _gap(pairs: Sequence[tuple[bool, bool]]) -> str:
-    """[%] Write the interval of the first rate of clearing less the second."""
+    """[%] Write the interval of the first rate of clearing minus the second."""
     kinds = (True, True), (True, False), (False, True), (False, False)
     gap = newcombe_paired(*(pairs.count(kind) for kind in kinds))
     return f"{100 * gap.low:+.0f} to {100 * gap.high:+.0f}"
@@ -322,7 +322,7 @@ def _on_knife_edge(height: float, speed: float, approach: float) -> Scenario:
 
 
 def pinched_table(found: list[Any]) -> str:
-    """Write how many runs of each cell get over."""
+    """Write how many runs of each cell clear."""
     return table(
         {
             "knife edge [mm]": f"{1e3 * cell['height']:.0f}",

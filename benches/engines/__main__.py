@@ -18,7 +18,7 @@ from benches.shared.results import processes, progress
 from research.figures import draw_dots
 
 _PAGE = Path(__file__).parents[2] / "docs" / "engines.md"
-_QUICK = Path("out") / "engines"  # a look, from nothing
+_QUICK = Path("out") / "engines"  # a quick run, without earlier results
 _EVERY, _FEW = 6, 2  # cells and starts of it
 _SLOW = "dart-fine"
 

@@ -1,4 +1,4 @@
-"""The cells of the comparison: which robot over what, and how the runs of a cell differ.
+"""The cells of the comparison: robots, obstacles, and differences between the runs of a cell.
 
 `find_cells` searches heights at which some runs clear and some do not.
 """
@@ -42,7 +42,7 @@ MODELS: dict[str, Track] = {
     "24 gears": c2d.CircumferentialWheels(24, wheel=c2d.GearWheel()),
     "public 3": c2d.HybridWheels(_THREE),
 }
-"""Wheels in a track's place; "public 3" are those of the Engineer's public model."""
+"""Wheels instead of a track; "public 3" are those of the Engineer's public model."""
 
 DRIVES: dict[str, tuple[float, Literal["track", "wheel"]]] = {
     "6 N m, track": (6.0, "track"),
@@ -73,7 +73,7 @@ def robot_of(robot: str, model: str, drive: str) -> c2d.Robot:
 
 
 def with_motors(base: c2d.Robot, drive: str) -> c2d.Robot:
-    """Return a robot with motors by their name in `DRIVES`, without rotors: rapier holds none."""
+    """Return a robot with motors named in `DRIVES`, without rotors, which rapier does not have."""
     torque, sharing = DRIVES[drive]
     if drive == "100 N m a wheel":
         # The sprocket's torque acts at the belt, each wheel's at its own radius.
@@ -96,7 +96,7 @@ STARTS = 16
 """Runs of a cell that are predicted; an engine may have fewer."""
 
 GROUNDS = ("step", "knife edge", "oblique edge", "one-sided edge", "step field")
-"""The last three are not the same across the robot."""
+"""The last three vary across the width of the robot."""
 
 _THICK = 0.01  # [m] of edges, as in a study
 _YAW = 0.35  # [rad] of oblique ones
@@ -109,7 +109,7 @@ _HEIGHT, _FRICTION = 0.03, 0.05  # [-] by which they vary, either way
 
 @dataclass(frozen=True, slots=True)
 class Cell:
-    """What the runs of a cell have in common.
+    """The common data of the runs of a cell.
 
     Parameters
     ----------
@@ -142,12 +142,12 @@ class Cell:
 
     @property
     def is_even(self) -> bool:
-        """Whether its ground is the same across the robot."""
+        """Whether its ground is constant across the width of the robot."""
         return self.ground in GROUNDS[:2]
 
     @property
     def is_coupled(self) -> bool:
-        """Whether the limit of one motor a track counts: it has less than makes wheels slip."""
+        """Whether the limit of one motor per track matters: it cannot make wheels slip."""
         return self.drive == "6 N m, track"
 
     def built(self) -> c2d.Robot:
@@ -186,7 +186,7 @@ class Cell:
 
 
 def terrain_of(ground: str, height: float, friction: float) -> Terrain:
-    """Return a ground by its name; on one that is not the same across, roll and yaw are held."""
+    """Return a ground by its name; if it varies across the width, roll and yaw are held."""
     match ground:
         case "step" | "knife edge":
             return obstacle(ground, height, friction)
@@ -213,7 +213,7 @@ def write_cells(cells: Sequence[Cell], path: Path = CELLS) -> None:
 
 
 _HEIGHTS = (0.4, 0.55, 0.7, 0.85, 1.0, 1.2, 1.4, 1.6, 1.8)
-"""[-] times the radius, for a first look."""
+"""[-] Heights relative to the radius, for a first search."""
 
 _RUNS = 8
 _FEW, _MANY = 0.2, 0.8
@@ -246,7 +246,7 @@ _PAPER_GROUNDS = (
 
 
 def _wanted() -> Iterator[Cell]:
-    """Yield what cells are to be found for, their height and friction still open.
+    """Yield the cells to search, whose height and friction are still open.
 
     On two lanes 24 gears are on one motor a track: with servos their runs take minutes there.
     """
@@ -277,7 +277,7 @@ def _paper() -> Iterator[Cell]:
 
 
 def find_cells() -> Iterator[tuple[Cell, float]]:
-    """Yield each cell with its rate of clearing; a friction further where a first one has none."""
+    """Yield each cell with its rate of clearing, with another friction if the first has none."""
     for number, cell in enumerate(_wanted()):
         if cell.model == _SLOW:
             height, friction = _GIVEN[cell.ground, cell.drive]
@@ -296,13 +296,13 @@ def find_cells() -> Iterator[tuple[Cell, float]]:
 
 
 def _search(cell: Cell) -> tuple[Cell, float]:
-    """Return the cell at the height whose rate is nearest to one half, and that rate."""
+    """Return the cell at the height with the rate closest to one half, and that rate."""
     radius = cell.built().outline.front_radius
     looked: list[tuple[Cell, float]] = []
     for share in _HEIGHTS:
         looked.append(_look(cell, share * radius))
         if _FEW <= looked[-1][1] <= _MANY or looked[0][1] == 0.0:
-            return looked[-1]  # what the lowest one stops is not tried at higher ones
+            return looked[-1]  # a robot stopped by the lowest is not tried at higher ones
         if len(looked) > 1 and _crosses(looked[-2:]):
             low, high = looked[-2:]
             for _ in range(_HALVINGS):

@@ -1,4 +1,4 @@
-"""Predictions of crawler2d, and runs in engines: of the cells, finer, faster, and timed."""
+"""Predictions of crawler2d, and runs in engines: of cells, with finer steps, faster, and timed."""
 
 import hashlib
 import json
@@ -104,7 +104,7 @@ LADDERS: Ladders = {
 
 _SHORT_STEPS = (0.5, 60), (0.1, 100), (0.05, 100), (0.02, 100), (0.01, 100), (0.01, 300)
 FINER: Ladders = {"pymunk": ("Chipmunk", _ladder("iterations", *_SHORT_STEPS))}
-"""Those for stops that a robot is carried past."""
+"""Settings for stops that a robot passes by momentum."""
 
 
 _STOPS = {"stopped", *(str(outcome) for outcome in Outcome if outcome.is_stop)}
@@ -162,7 +162,7 @@ def run_in(engine: Engine, scenario: Scenario, *scene: Any) -> dict[str, Any]:
 
 
 def predict(cells: Sequence[Cell], path: Path = PREDICTIONS) -> None:
-    """Write what crawler2d predicts before the engines run: the runs of each cell, by draw."""
+    """Write the predictions of crawler2d before the engines run: the runs of each cell, by draw."""
     lines = []
     for number, cell in enumerate(cells, 1):
         runs = [simulated(scenario) for scenario in cell.scenarios()]
@@ -192,7 +192,7 @@ def hash_of(path: Path = PREDICTIONS) -> str:
 
 
 def compare_predictions(path: Path, kept: Path = PREDICTIONS) -> str:
-    """Count the runs of another file that end otherwise than those of the kept one."""
+    """Count the runs of another file that end differently from those of the stored one."""
     before, now = predictions(kept), predictions(path)
     lines = []
     for wheels, has_gears in (("round wheels", False), ("gear wheels", True)):
@@ -214,7 +214,7 @@ def compare_predictions(path: Path, kept: Path = PREDICTIONS) -> str:
 
 
 def distance(one: Run, other: Run) -> float:
-    """[m] Return how far apart the last places of two runs are."""
+    """[m] Return the distance between the last positions of two runs."""
     return math.hypot(one["x"] - other["x"], one["y"] - other["y"])
 
 
@@ -279,7 +279,7 @@ def _run_by_name(name: str, scenario: Scenario) -> dict[str, Any]:
 
 
 def _runner(name: str) -> tuple[Callable[[Scenario], dict[str, Any]], str]:
-    """Return what runs a scenario, and its version."""
+    """Return a function that runs a scenario, and its version."""
     if name in ("crawler2d", "rapier"):
         engine = None if name == "crawler2d" else name
         return partial(simulated, engine=engine), f"{name}, through crawler2d"
@@ -382,7 +382,7 @@ def refine(cells: Sequence[Cell], engines: Sequence[str], folder: Path, most: in
 
 
 def _from_stop(engine: Engine | None, cell: Cell, scenario: Scenario, stop: Run) -> str:
-    """Return whether an engine "stays" in or "leaves" the pose of a stop, or "" if it is none.
+    """Return whether an engine "stays" in or "leaves" the pose of a stop, or "" without a stop.
 
     rapier, which crawler2d starts as the scenario says, is not asked.
     """

@@ -43,7 +43,7 @@ def apart(one: Sequence[Run], other: Sequence[Run]) -> bool:
 
 
 def same_outcome(of: Iterable[tuple[Cell, Run, Run]]) -> str:
-    """Return in how many pairs both clear or both do not."""
+    """Return the number of pairs in which both or none clear."""
     same = [(one["end"] == "cleared") == (other["end"] == "cleared") for _, one, other in of]
     return f"{sum(same)} of {len(same)}" if same else ""
 
@@ -116,7 +116,7 @@ def parts(cells: Sequence[Cell], folder: Path) -> dict[str, str]:
 
 
 def agreeing(cells: Sequence[Cell], folder: Path) -> dict[str, dict[str, float]]:
-    """Return by engine in how many runs [%] it agrees with each predicted outcome."""
+    """Return by engine the fraction of runs [%] that agree with each predicted outcome."""
     plane, predicted = [cell for cell in cells if cell.group == "plane"], predictions()
     found: dict[str, dict[str, float]] = {}
     for name, runs in load(folder)[0].items():
@@ -130,7 +130,7 @@ def agreeing(cells: Sequence[Cell], folder: Path) -> dict[str, dict[str, float]]
 def _engines(
     cells: Sequence[Cell], predicted: Runs, results: Results, versions: Mapping[str, str]
 ) -> str:
-    """Return a row for each engine: what it is, and in how much it agrees."""
+    """Return a row for each engine: its description and agreement."""
     rows = []
     for name, runs in results.items():
         found = list(pairs(cells, predicted, runs))
@@ -157,7 +157,7 @@ def _models(cells: Sequence[Cell], predicted: Runs, results: Results) -> str:
 
 
 def _poses(cells: Sequence[Cell], predicted: Runs, results: Results) -> str:
-    """Return how far apart the poses of stops are, where both stop."""
+    """Return the distances between the poses of stops, if both stop."""
     rows = []
     for name, runs in results.items():
         row = [name]
@@ -190,7 +190,7 @@ def _ends(cells: Sequence[Cell], predicted: Runs, results: Results) -> str:
 
 
 def _space(cells: Sequence[Cell], predicted: Runs, results: Results) -> str:
-    """Return how many runs clear on grounds that are not the same across."""
+    """Return how many runs clear on grounds that vary across the width."""
     columns = {name: runs for name, runs in results.items() if ENGINES[name].in_space}
     rows = []
     for cell in sorted(cells, key=lambda cell: GROUNDS.index(cell.ground)):
@@ -261,7 +261,7 @@ def _rates(cells: Iterable[Sequence[Run]]) -> str:
 
 
 def _costs(found: dict[str, Any]) -> str:
-    """Return the costs in milliseconds a simulated second."""
+    """Return the costs in milliseconds per simulated second."""
     rows = [
         [name, *(f"{1e3 * costs[model]:.3g}" if model in costs else "" for model in MODELS_TIMED)]
         for name, costs in found.items()
@@ -270,7 +270,7 @@ def _costs(found: dict[str, Any]) -> str:
 
 
 def _speeds(found: dict[str, Any]) -> str:
-    """Return how many runs clear at each speed, and where the others stop."""
+    """Return how many runs clear at each speed, and the positions of other stops."""
     rows = []
     for label, engines in found.items():
         for name, speeds in engines.items():

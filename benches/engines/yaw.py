@@ -1,4 +1,4 @@
-"""Jams of the side view, put into space before edges that are not square to the robot."""
+"""Jams of the side view in three dimensions, at edges that are not square to the robot."""
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -24,7 +24,7 @@ Jam = Mapping[str, Any]
 """A jam with its runs by yaw."""
 
 _SEED = 1
-_EACH = 20  # jams of a model
+_EACH = 20  # jams per model
 _YAWS = (0, 1, 3, 5)  # degrees
 _MODELS: dict[str, Track] = {
     "line of 2": c2d.LineOfWheels(2),
@@ -41,7 +41,7 @@ _PUSH = 0.15  # [-] weights
 
 
 def turn(path: Path) -> None:
-    """Run jams of each model in Bullet at its fine setting, at each yaw, those that are missing.
+    """Run the missing jams of each model in Bullet at its fine setting, at each yaw.
 
     Each one is driven from the pose of the stop, and from the start of the run.
     """
@@ -94,12 +94,12 @@ def holds(jam: Jam, yaw: int) -> bool:
 
 
 def fails(jam: Jam, yaw: int) -> bool:
-    """Whether a robot that starts where the scenario says does not clear."""
+    """Whether a robot that starts as in the scenario does not clear."""
     return bool(jam["start"][str(yaw)]["end"] != "cleared")
 
 
 def table(found: dict[str, Any]) -> str:
-    """Return how many hold, or fail, square to the edge, and how many of these at each yaw."""
+    """Return how many hold or fail square to the edge, and how many of these do at each yaw."""
     jams = found["jams"]
     every = [jam for mine in jams.values() for jam in mine]
     groups = {
@@ -120,7 +120,7 @@ def table(found: dict[str, Any]) -> str:
 
 
 def _set(engine: Any, scenario: Scenario, stop: Diagnosis, yaw: int) -> dict[str, Any]:
-    """Drive from rest in the pose of a stop, or close by where no ground is inside the robot.
+    """Drive from rest in the pose of a stop, or nearby where no ground is inside the robot.
 
     The ground is turned about the vertical through the edge in the pocket, between the tracks.
     """

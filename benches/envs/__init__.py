@@ -1,1 +1,1 @@
-"""Steps of environments a second."""
+"""Steps of environments per second."""

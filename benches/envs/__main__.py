@@ -1,4 +1,4 @@
-"""Measure environment steps a second; the table goes to the terminal.
+"""Measure environment steps per second; the table goes to the terminal.
 
 Usage, from the repository root: ``python -m benches.envs [--quick]``.
 """
@@ -25,14 +25,14 @@ from benches.shared.results import progress
 from crawler2d.envs import FlipperEnv, FlipperVectorEnv
 
 _NOISE = 0.2
-"""[-] Standard deviation of the actions about driving on, as those of a policy that explores."""
+"""[-] Standard deviation of actions about driving on, like those of a policy that explores."""
 
 _DT = 0.05
 _COUNTS, _THREADS = (64, 256), (1, 2)
 _MANY = 4096
 
 Rate = tuple[float, float]
-"""[1/s], [-] Steps, and the share of their time in the physics, if that is known."""
+"""[1/s], [-] Steps, and the fraction of their time in the physics, if known."""
 
 Job = Callable[[], Rate]
 
@@ -40,7 +40,7 @@ _DRIVE = c2d.Drive(speed=0.39)
 
 
 def scenes() -> dict[str, c2d.Scenario]:
-    """Return what is simulated, by name."""
+    """Return the scenarios by name."""
     engineer = c2d.robots.engineer(flippers=None)
     tracks: dict[str, Any] = {
         "Engineer, belt": c2d.BeltTrack(),
@@ -64,12 +64,12 @@ def actions(count: int, width: int, steps: int) -> NDArray[np.float64]:
 
 
 def width_of(scenario: c2d.Scenario) -> int:
-    """Return how many numbers an action has."""
+    """Return the number of values of an action."""
     return 1 if scenario.robot.flippers is None else 3
 
 
 def by_hand(scenario: c2d.Scenario, steps: int) -> Rate:
-    """[1/s] Steps of a `Simulation` that is commanded, advanced, asked and reset."""
+    """[1/s] Steps of a `Simulation` that is commanded, advanced, read and reset."""
     simulation, flippers = c2d.Simulation(scenario), scenario.robot.flippers
     given = actions(1, width_of(scenario), steps)[:, 0].tolist()
     begin = time.perf_counter()
@@ -87,7 +87,7 @@ def by_hand(scenario: c2d.Scenario, steps: int) -> Rate:
 
 
 def alone(env: Any, steps: int) -> Rate:
-    """[1/s] Steps of an environment by itself."""
+    """[1/s] Steps of a single environment."""
     env.reset(seed=0)
     given = actions(1, env.action_space.shape[0], steps)[:, 0]
     begin = time.perf_counter()
@@ -114,7 +114,7 @@ class _Timed:
 
 
 def together(scenario: c2d.Scenario, count: int, threads: int, steps: int) -> Rate:
-    """[1/s], [-] Steps of a vector environment, and the share of its time in the physics."""
+    """[1/s], [-] Steps of a vector environment, and the fraction of its time in the physics."""
     env = FlipperVectorEnv(count, scenario, threads=threads)
     env.reset(seed=0)
     many = env._begun()._many
@@ -128,7 +128,7 @@ def together(scenario: c2d.Scenario, count: int, threads: int, steps: int) -> Ra
 
 
 def gigabytes_of(scenario: c2d.Scenario, count: int) -> float:
-    """[GB] Most memory of this process with so many in their first second."""
+    """[GB] Peak memory of this process with a number of environments in their first second."""
     env = FlipperVectorEnv(count, scenario)
     env.reset(seed=0)
     for action in actions(count, width_of(scenario), 20):
@@ -137,7 +137,7 @@ def gigabytes_of(scenario: c2d.Scenario, count: int) -> float:
 
 
 def main() -> None:
-    """Measure all of them, in turns."""
+    """Measure all jobs in turns."""
     parser = argparse.ArgumentParser(prog="python -m benches.envs", description=__doc__)
     parser.add_argument("--quick", action="store_true", help="few steps, one round")
     quick = parser.parse_args().quick
@@ -161,7 +161,7 @@ def main() -> None:
 
 
 def report(name: str, jobs: Mapping[str, Job], rounds: int) -> None:
-    """Say the most steps a second of each job, of some rounds of all of them."""
+    """Return the most steps per second of each job, from several rounds of all jobs."""
     found = []
     for k in range(rounds):
         progress(f"{name}: round {k + 1} of {rounds}")

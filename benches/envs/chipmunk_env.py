@@ -1,4 +1,4 @@
-"""The task of `FlipperClimb` in Chipmunk as users write it: belts are surfaces that slide."""
+"""The task of `FlipperClimb` in Chipmunk as users would write it: belts are moving surfaces."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from crawler2d.parameters.robot import Robot
 __all__ = ["ChipmunkClimb"]
 
 _TIME_STEP, _ITERATIONS, _SLOP = 1e-3, 20, 1e-4
-"""[s], [-], [m] The middle of the settings of the tuned engine in the other benchmarks."""
+"""[s], [-], [m] Medium settings of the tuned engine in the other benchmarks."""
 
 
 class ChipmunkClimb(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
-    """A robot with flippers before a step, with the observation and the action of ours.
+    """A robot with flippers at a step, with the observation and action of our environment.
 
     Parameters
     ----------

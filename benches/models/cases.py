@@ -1,4 +1,4 @@
-"""The cases: robots of public files with their flippers held, and what they drive over."""
+"""The cases: robots of public files with their flippers held, and their obstacles."""
 
 import warnings
 from collections.abc import Mapping
@@ -17,11 +17,11 @@ ROBOTS = Path(__file__).parents[2] / "tests" / "robots"
 STARTS = 20
 
 _AMPLE = 20.0
-"""[-] Times the torque that was read: no file limits its wheels below what makes them slip."""
+"""[-] Factor of the torque that was read: no file limits its wheels below slipping."""
 
 _FIRM = 1e4  # [N m] holds a flipper
 _FIRMEST = 1e6  # [N m] brings the rotor below up to speed
-_ROTOR = 100.0  # [kg m^2] hundreds of times what strikes an edge
+_ROTOR = 100.0  # [kg m^2] hundreds of times the inertia that strikes an edge
 _SEED = 23
 _SPEED, _SLOW = 0.4, 0.1  # [m/s] what an audit has for 0.41 m between the axles; no momentum
 _DURATION = 12.0 * _SPEED  # [m] twice the longest way, at the commanded speed
@@ -29,7 +29,7 @@ _DURATION = 12.0 * _SPEED  # [m] twice the longest way, at the commanded speed
 
 @dataclass(frozen=True, slots=True)
 class Cell:
-    """An obstacle, and how it is met.
+    """An obstacle, and the approach to it.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ class Cell:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Case:
-    """A public file and what its robot drives over.
+    """A public file, and the obstacles of its robot.
 
     Parameters
     ----------
@@ -94,7 +94,7 @@ class Case:
         return replace(robot, drivetrain=drivetrain, flippers=flippers)
 
     def firm(self, robot: Robot) -> Robot:
-        """Return a robot whose motors keep their speed through impacts, too, as in engines.
+        """Return a robot whose motors also keep their speed through impacts, as in engines.
 
         An impact takes no time in crawler2d, so only a rotor carries a speed through it; in an
         engine a motor that holds a speed has a whole step for it, or gives it as a constraint.
@@ -189,5 +189,5 @@ CASES: dict[str, Case] = {
         files=("public", "export"),
     ),
 }
-"""The cases by name. In the slow cells no momentum carries a robot over what holds it at rest.
-MARV's is a control: nothing of it was found to seize, so there is nothing to repair."""
+"""The cases by name. In slow cells, momentum does not carry a robot over what stops it at rest.
+MARV is a control: it was not found to seize, so there is nothing to repair."""

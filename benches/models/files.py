@@ -55,7 +55,7 @@ def exported(case: Case, robot: Robot, form: str, name: str) -> RobotModel:
 
 
 def patch(case: Case, robot: Robot, form: str) -> RobotModel:
-    """Return the public file with only its wheels changed to those of a robot: `Audit.patch`.
+    """Return the public file with its wheels changed to those of a robot by `Audit.patch`.
 
     Parameters
     ----------
@@ -92,7 +92,7 @@ def _reread(text: str, file: str, **how: Any) -> Reading:
 
 
 def loaded(reading: Reading, form: str, angle: float) -> RobotModel:
-    """Return a file as an engine loads it, in which all robots have +x forward and z up.
+    """Return a file for an engine, in which all robots have +x forward and z up.
 
     In another format than its own it has the same links, joints, shapes and inertias: those of the
     tree that was read.
@@ -147,7 +147,7 @@ def _sense(tree: Tree, link: str) -> float:
 def balanced(reading: Reading) -> Tree:
     """Return a robot with the centres of mass of its wheels on their axles.
 
-    The hull's moves the other way, so that the centre of mass of the robot stays where it is.
+    That of the hull moves in the other direction, so that the robot's centre of mass stays.
     """
     tree = reading.tree
     wheels = set(reading.wheels["name"].tolist())
@@ -191,7 +191,7 @@ def on_axles(reading: Reading) -> Tree:
 
 
 def _limited(tree: Tree) -> Tree:
-    """State the limits of motors that a file leaves out: DART's reader of URDF asks for them."""
+    """Add missing limits of motors, which DART's reader of URDF requires."""
 
     def or_ample(limit: float | None) -> float:
         return _NO_LIMIT if limit is None else limit
@@ -218,4 +218,4 @@ VARIANTS: dict[str, tuple[Callable[[Reading], Tree], ...]] = {
     "on-axles": (on_axles,),
     "balanced-on-axles": (balanced, on_axles),
 }
-"""Changes of the robot that a public file states, each after the other."""
+"""Changes of the robot in a public file, one after the other."""

@@ -147,7 +147,7 @@ _KINDS = ("runs", "firm")
 
 
 def summary(runs: Sequence[dict[str, Any]]) -> str:
-    """Return how runs ended, and where the chassis frame of those that stopped is [mm].
+    """Return the ends of runs, and the positions of the chassis frame of those that stopped [mm].
 
     Examples
     --------
@@ -164,13 +164,13 @@ def summary(runs: Sequence[dict[str, Any]]) -> str:
 
 
 def agreement(predicted: Sequence[dict[str, Any]], found: Sequence[dict[str, Any]]) -> int:
-    """Return in how many starts both clear or both do not."""
+    """Return the number of starts from which both or none clear."""
     pairs = zip(predicted, found, strict=False)
     return sum((a["end"] == "cleared") == (b["end"] == "cleared") for a, b in pairs)
 
 
 def rows(results: dict[str, dict[str, Any]]) -> list[list[str]]:
-    """Return a row for each cell that was run: what it is, the predictions, and each engine."""
+    """Return a row for each cell that was run: description, predictions, and each engine."""
     predictions = read(PREDICTIONS)
     found = []
     for name, case in CASES.items():
@@ -192,9 +192,9 @@ def rows(results: dict[str, dict[str, Any]]) -> list[list[str]]:
 
 
 def counts(results: dict[str, dict[str, Any]]) -> list[list[str]]:
-    """Return a row for each engine: in how many starts it agrees, by what was predicted.
+    """Return a row for each engine: in how many starts it agrees, by predicted outcome.
 
-    First with the predictions that were written before, then with those of firm motors.
+    First with the predictions written before, then with those for firm motors.
     """
     predictions = read(PREDICTIONS)
     found = []
@@ -214,13 +214,13 @@ def counts(results: dict[str, dict[str, Any]]) -> list[list[str]]:
 
 
 _NEAR = 1e-3
-"""[m] A stop this near to a jam along the ground is there: Bullet keeps bodies apart by 0.3 mm."""
+"""[m] A stop this close to a jam along the ground is at it: Bullet separates bodies by 0.3 mm."""
 
 
 def stops(results: dict[str, dict[str, Any]]) -> list[list[str]]:
-    """Return a row for each engine: how many stops of the public files are at jams by `c2d.jams`.
+    """Return a row for each engine: how many stops of the public files are at jams from `c2d.jams`.
 
-    Flippers and wheels are as at the start, so these are computed from geometry and friction alone.
+    Flippers and wheels are as at the start, so jams follow from geometry and friction alone.
     """
     predictions = read(PREDICTIONS)
     places: dict[str, list[float]] = {}

@@ -1,1 +1,1 @@
-"""The same job in five engines: cost per step, at their defaults and at equal accuracy."""
+"""The same task in five engines: cost per step, with defaults and at equal accuracy."""

@@ -72,7 +72,7 @@ def main() -> None:
 
 
 def _refuse_without_a_run(parser: argparse.ArgumentParser, path: Path) -> None:
-    """End before anything is measured if the page would lack what only a whole run brings."""
+    """Exit before any measurement if the page would lack results of a full run."""
     found = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
     missing = [name for name in ("machine", "wall") if name not in found]
     if missing:

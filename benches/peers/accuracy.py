@@ -130,7 +130,7 @@ class _Ground:
         self.edges = profile[1:-1][convex]
 
     def inside(self, points: Array) -> Array:
-        """Which points, shape (n, 2), lie below the profile."""
+        """Return which points, shape (n, 2), lie below the profile."""
         column = np.searchsorted(self._lefts, points[:, 0], side="right") - 1
         return np.asarray(points[:, 1] < self._tops[np.maximum(column, 0)])
 
@@ -177,7 +177,7 @@ def _edge_depth(ground: _Ground, body: Body, poses: Array) -> float:
 
 
 def _depth_in(polygon: Array, radius: float, points: Array) -> Array:
-    """[m] How deep points lie in a convex polygon, negative outside.
+    """[m] Return the depth of points in a convex polygon, negative outside.
 
     The side within the body's circle, the base of a grouser, does not count as a way out.
     """
@@ -197,7 +197,7 @@ COST_SPAN = 2.5
 
 @dataclass(frozen=True)
 class Effort:
-    """How thorough the search is.
+    """Effort of the search.
 
     Attributes
     ----------
@@ -216,7 +216,7 @@ class Effort:
 
 @dataclass(frozen=True)
 class Limit:
-    """What an engine converges to.
+    """The limit to which an engine converges.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""A chain of shoes in pymunk and in crawler2d: what it costs, and how far its pins open.
+"""A chain of shoes in pymunk and in crawler2d: its cost, and the gaps of its pins.
 
 The robot depends on no engine: two toothed ends, a hull, shoes on pins. The pins of the straight
 runs lie one radius below and above the axles, a whole number of pitches apart. Round an end they
@@ -51,8 +51,8 @@ if TYPE_CHECKING:
 TEETH = {22: 8, 36: 12, 44: 16}
 """Teeth of one sprocket, by the number of shoes."""
 SPEED, TORQUE, FRICTION, DROP = 0.4, 30.0, 0.9, 0.002
-"""[m/s] Of the chain, [N m] limit of the only motor, at the rear sprocket, [-] between shoes and
-ground, [m] from which the robot falls at the start."""
+"""[m/s] Speed of the chain, [N m] limit of the only motor, at the rear sprocket, [-] friction of
+shoes and ground, [m] height from which the robot falls at the start."""
 
 _SLACK = 0.001  # [m]
 # [m] Depth below the pins at which the teeth begin and end, and the lugs end.
@@ -76,12 +76,12 @@ class ChainRobot:
     axle_distance, plate_thickness = 0.576, 0.0146
     """[m]"""
     hull_mass, sprocket_mass, chain_mass = 13.0, 1.5, 3.96
-    """[kg] The sprocket is one of two."""
+    """[kg] Masses; the sprocket is one of two."""
     hull_inertia, sprocket_inertia = 0.4008, 0.0048
-    """[kg m^2] Of a box 0.6 m long, and of a disc."""
+    """[kg m^2] Moments of inertia of a box 0.6 m long, and of a disc."""
     torque, friction, drop = TORQUE, FRICTION, DROP
     hull_friction, disc_friction, tooth_friction = 0.1, 0.3, 0.1
-    """[-] Between shoes and the robot."""
+    """[-] Friction between shoes and the robot."""
 
     @property
     def tooth_count(self) -> int:
@@ -186,7 +186,7 @@ class ChainRobot:
         return self.pin_radius * math.cos(math.pi / self.tooth_count)
 
 
-# [s] Longer than any run, so that nothing ends it.
+# [s] Longer than any run.
 _NEVER = 1000.0
 # [m/s^2] The motor in pymunk has no ramp.
 _AT_ONCE = 100.0

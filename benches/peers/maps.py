@@ -1,4 +1,4 @@
-"""A map of rates, by a sweep of crawler2d and by a loop over pymunk: what each costs.
+"""The costs of a map of rates with a sweep of crawler2d and with a loop over pymunk.
 
 Height of the step and friction, 12 x 12 cells, each with 20 repeats under `of_contact` for every
 sample of `of_robot`. The loop builds each of its runs from the scenario of one of ours, and ends it
@@ -32,7 +32,7 @@ _FRICTIONS = np.linspace(0.45, 1.0, 12)
 _FINEST = Setting(0.125e-3, iterations=100)
 _GRID = [Setting(dt * 1e-3, iterations=n) for dt in (1.0, 0.5, 0.25) for n in (5, 10, 30, 80)]
 _AGREES = 0.99
-# [s] How often the loop looks, and [m], [s] what it takes for a robot that stands.
+# [s] Interval of the checks of the loop, and [m], [s] criteria for a robot that stands.
 _LOOK, _STANDS, _WINDOW = 0.1, 1e-3, 2.0
 
 _PAGE = Path(__file__).parents[2] / "docs" / "studies" / "maps.md"
@@ -182,7 +182,7 @@ def main() -> None:
 
 
 def scene_of(nominal: Scene, base: Scenario, drawn: Scenario) -> Scene:
-    """Change a scene as a drawn scenario differs from the scene's own.
+    """Apply to a scene the changes of a drawn scenario.
 
     Centre of mass, torque, clearance of the belly, approach, speed, friction and height of the step
     may differ.
@@ -190,7 +190,7 @@ def scene_of(nominal: Scene, base: Scenario, drawn: Scenario) -> Scene:
     chassis, *wheels = nominal.bodies
     mass = sum(body.mass for body in nominal.bodies)
     center = np.subtract(drawn.robot.center_of_mass, base.robot.center_of_mass)
-    moved = center * mass / chassis.mass  # of the chassis, so that of all moves by `center`
+    moved = center * mass / chassis.mass  # so that the total centre moves by `center`
     polygons = tuple(polygon - moved for polygon in chassis.polygons)
     if base.robot.belly is not None and drawn.robot.belly is not None:
         raised = np.subtract(drawn.robot.belly, base.robot.belly)

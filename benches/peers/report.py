@@ -151,7 +151,7 @@ def _by_scene(rows: Rows, cell: Any) -> str:
     )
 
 
-# [ms] Largest time for a simulated second, and the better aim.
+# [ms] Largest time per simulated second, and a better target.
 _AIMS = {
     "belt with grousers": (18, 10),
     "22 shoes": (50, 35),

@@ -1,4 +1,4 @@
-"""The sections of the report that only time: defaults, yardstick and batches.
+"""The sections of the report with times only: defaults, yardstick and batches.
 
 Batches are many worlds on one thread and on two, in the way that each engine offers from Python.
 crawler2d and MuJoCo have thread pools of their own; the others get one process per world at a time.

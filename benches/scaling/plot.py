@@ -53,7 +53,7 @@ def _costs(name: str, drawn: Sequence[Curve]) -> Figure:
 
 
 def _accuracies(rows: Sequence[dict[str, Any]]) -> Figure:
-    """Draw the cost over the accuracy and how far off the robot gets, one curve per scene."""
+    """Draw the cost over the accuracy and over the error of the robot's position, per scene."""
     figure, ((cost, error),) = make_panels(1, 2, (8.0, 3.4))
     drawn = curves(rows, "accuracy")
     for index, curve in enumerate(drawn):

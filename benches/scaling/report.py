@@ -41,7 +41,7 @@ def curves(rows: Sequence[dict[str, Any]], figure: str) -> list[Curve]:
 
 
 def deviations(rows: Sequence[dict[str, Any]], curve: Curve) -> list[float]:
-    """[m] How far the robot gets from where it does at the first point, at least a nanometre."""
+    """[m] Distance of the robot's end from that at the first point, at least a nanometre."""
     mine = group_by(rows, "figure", "panel", "curve")[curve.figure, curve.panel, curve.name]
     own = {row["x"]: row["final_x"] for row in mine}
     first, *others = (own[x] for x in curve.x)
@@ -86,7 +86,7 @@ def _ends(curve: Curve | None) -> str:
 
 
 def _stopped(rows: Sequence[dict[str, Any]]) -> str:
-    """Name the robots that the step stops; their cost is that of a stopped robot."""
+    """Name the robots that the step stops, whose cost is that of a stopped robot."""
     at_step = (row for row in rows if (row["figure"], row["panel"]) == ("wheels", STEP))
     held = group_by((row for row in at_step if row["final_x"] < 0.0), "curve")
     names = [", ".join((name, *(f"{row['x']:g}" for row in own))) for name, own in held.items()]

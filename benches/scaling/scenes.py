@@ -19,12 +19,12 @@ WHEELS = (3, 6, 12, 24, 48, 96)
 GROUSERS = (6, 12, 24, 48)
 PIECES = (10, 100, 1_000, 10_000, 100_000)
 ACCURACIES = (1e-7, 3e-7, 1e-6, 3e-6, 1e-5)
-"""[m] Of the solver."""
+"""[m] Accuracies of the solver."""
 
 FLAT, STEP = "flat ground", "step of 50 mm"
 CUT, BLOCKS = "flat ground in pieces", "blocks in pieces"
 LEVEL = "level"
-"""Suffix of the curve whose pieces lie level and so are read as one piece."""
+"""Suffix of the curve whose pieces are level, and so are merged into one."""
 
 _SHAPES: tuple[Wheel, ...] = (c2d.RoundWheel(), c2d.GearWheel())
 # Three of such wheels just carry the Engineer, and 96 overlap.
@@ -33,7 +33,7 @@ _SMALL = c2d.CircumferentialWheels(24, wheel_radius=0.016)
 _TIP_THICKNESS = 1e-3
 
 # [s] 4 m at 0.4 m/s, including the acceleration; over the step and beyond.
-# Long enough on ground in pieces that what a new simulation fetches into the caches counts little.
+# Long enough on ground in pieces to make the filling of caches by a new simulation negligible.
 _DURATIONS = {FLAT: 11.0, STEP: 6.0, CUT: 11.0, BLOCKS: 6.0}
 
 # [m] Extent of the ground in pieces.

@@ -1,1 +1,1 @@
-"""What several programs use: stored results, and measurements of time."""
+"""Common parts of several programs: stored results, and measurements of time."""

@@ -31,9 +31,9 @@ def seconds(job: Callable[[], object]) -> float:
 
 
 def interleaved(jobs: Mapping[Key, Callable[[], float]], repeats: int) -> dict[Key, float]:
-    """[s] Time all jobs once, then all of them again: the least time of each.
+    """[s] Time all jobs once, then all of them again; return the least time of each.
 
-    Disturbances affect all of them.
+    So disturbances affect all jobs.
 
     Parameters
     ----------
@@ -65,7 +65,7 @@ def spread(pool: ProcessPoolExecutor, work: Callable[[Any], None], tasks: Sequen
 
 
 def spin(pool: ProcessPoolExecutor, loops: int) -> float:
-    """[s] Run counting loops in a pool, which show the gain by more cores."""
+    """[s] Run counting loops in a pool, which show the gain of more cores."""
     return spread(pool, _count, [_SPINS] * loops)
 
 
@@ -97,7 +97,7 @@ def _processor() -> str:
 
 
 def sentence(machine: Mapping[str, Any], wall: float) -> str:
-    """Write what `machine` returned, and how long [s] the measurement took."""
+    """Write the result of `machine`, and the duration [s] of the measurement."""
     versions = ", ".join(f"{name} ({version})" for name, version in machine["versions"].items())
     load = "unknown" if machine["load"] is None else f"{machine['load']:.1f}"
     return (
@@ -124,13 +124,13 @@ def write_parts(
 
 
 def _wrapped(block: str) -> str:
-    """Wrap a paragraph, because figures change its length."""
+    """Wrap a paragraph, whose length depends on figures."""
     is_paragraph = not block.startswith(("|", "#", "-", "!"))
     return textwrap.fill(block, 100, break_on_hyphens=False) if is_paragraph else block
 
 
 def rate(count: int, of: int) -> str:
-    """Write a rate with Wilson's 95 % interval of it in percent.
+    """Write a rate with its Wilson 95 % interval in percent.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Stored results: compressed JSON that is complete at any time, and a list of its checksums.
+"""Stored results: compressed JSON that is complete at any time, and a list of checksums.
 
 ``python -m benches.shared.results`` writes the list again after a program has added results.
 """
@@ -39,7 +39,7 @@ def read_text(path: Path) -> str:
 
 
 def write_text(path: Path, text: str) -> None:
-    """Compress text into a file, whose old content stays until the new one is complete."""
+    """Compress text into a file, which keeps its old content until the new one is complete."""
     _replace(path, lzma.compress(text.encode("utf-8")))
 
 
@@ -61,7 +61,7 @@ def write(path: Path, data: Any) -> None:
 
 
 def write_rows(path: Path, rows: Iterable[Any]) -> None:
-    """Write a list as JSON, one line each, without compression."""
+    """Write a list as JSON, one item per line, without compression."""
     lines = ",\n".join(map(json.dumps, rows))
     _replace(path, f"[\n{lines}\n]\n".encode())
 
@@ -81,7 +81,7 @@ def checksums() -> str:
 
 
 class Results:
-    """The results of a program in a file; runs that the file has are not repeated.
+    """The results of a program in a file, whose runs are not repeated.
 
     Parameters
     ----------

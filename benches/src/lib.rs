@@ -62,7 +62,7 @@ impl Scene {
         ValidScenario::from_json(self.text).expect("the shared scenario is valid")
     }
 
-    /// The same moved by rapier's dynamics; `None` if they cannot hold its robot.
+    /// The same with rapier's dynamics; `None` if they cannot represent its robot.
     pub fn in_rapier(&self) -> Option<ValidScenario> {
         let mut scenario = self.scenario();
         scenario.solver.engine = Engine::Rapier;

@@ -1,4 +1,4 @@
-"""The paper that introduced gear wheels: its tables, and when a rate of ours agrees with one.
+"""The paper that introduced gear wheels: its tables, and when one of our rates agrees with it.
 
 The paper is "Gear Wheels based Simulation of Crawlers for Mobile Robot Servosila Engineer"; `python
 -m research paper` reproduces it. Nothing here enters a simulation.
@@ -21,12 +21,12 @@ LWA_GEAR = "LWA, large gear wheels"
 GEAR_MODEL = "model with gear wheels"
 """The last column of the paper's Table 2."""
 GEAR_MODEL_OTHERWISE = "model with gear wheels, read otherwise"
-"""The same column: its text does not say which of its two models with gear wheels is meant."""
+"""The same column, because the text does not say which of two models with gear wheels it means."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RealRobot:
-    """Table 1: measured on the robot, or declared by its maker."""
+    """Table 1: values measured on the robot, or declared by its maker."""
 
     max_speed: float
     """[m/s] The paper assumes that it is limited by a low-level controller."""
@@ -39,7 +39,7 @@ class RealRobot:
     declared_max_slope: float
     """[rad]"""
     stopping_distance: float
-    """[m] From full speed."""
+    """[m] Stopping distance from full speed."""
 
 
 TABLE_1 = RealRobot(
@@ -53,7 +53,7 @@ TABLE_1 = RealRobot(
 
 
 class Success(NamedTuple):
-    """A row of Table 2: the share of 20 runs that crossed a random step environment (RSE)."""
+    """A row of Table 2: the fraction of 20 runs that crossed a random step environment (RSE)."""
 
     obstacle: str
     cwa: float
@@ -62,7 +62,7 @@ class Success(NamedTuple):
 
     @property
     def columns(self) -> dict[str, float]:
-        """The shares by column, that of the gear wheels in both readings."""
+        """The fractions by column, with both readings of the gear wheels."""
         gears = dict.fromkeys((GEAR_MODEL, GEAR_MODEL_OTHERWISE), self.gear)
         return {CWA_ROUND: self.cwa, LWA_ROUND: self.lwa, **gears}
 
@@ -109,22 +109,22 @@ WITHIN = 0.15
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Agreement:
-    """A rate of ours less one of the paper."""
+    """The difference between one of our rates and one of the paper."""
 
     difference: float
-    """[-] Ours less the paper's."""
+    """[-] Our rate minus the paper's."""
     low: float
-    """[-] Of Newcombe's 95 % interval, both rates taken as binomial."""
+    """[-] Bounds of Newcombe's 95 % interval for binomial rates."""
     high: float
     verdict: str
     """"agrees" within `WITHIN`; else "differs", or "open" if the interval holds 0."""
 
 
 def agreement(successes: int, count: int, share: float, runs: int = PAPER_RUNS) -> Agreement:
-    """Compare a rate of ours with a percentage of the paper.
+    """Compare one of our rates with a percentage of the paper.
 
-    The verdict is about the two rates as they are. With 20 runs on one side no interval is ever
-    within `WITHIN`: 0 of 20 against 0 of 100 gives -0.16 to 0.04.
+    The verdict is about the observed rates. With 20 runs on one side, no interval is ever within
+    `WITHIN`: 0 of 20 against 0 of 100 gives -0.16 to 0.04.
 
     Parameters
     ----------
@@ -138,7 +138,7 @@ def agreement(successes: int, count: int, share: float, runs: int = PAPER_RUNS) 
     Raises
     ------
     ValueError
-        If the share is not one of that many runs, or there are no runs of ours.
+        If the share is impossible with this number of runs, or we have no runs.
 
     Examples
     --------
@@ -151,7 +151,7 @@ def agreement(successes: int, count: int, share: float, runs: int = PAPER_RUNS) 
     if abs(theirs - share * runs) > 1e-9 * runs:
         raise ValueError(f"share must be a whole number of {runs} runs, got {share}")
     difference, low, high = c2d.newcombe(successes, count, theirs, runs)
-    # Rates are ratios of small whole numbers: 0.15 is no exact binary fraction.
+    # Rates are ratios of small integers: 0.15 is not an exact binary fraction.
     if abs(difference) <= WITHIN + 1e-12:
         verdict = "agrees"
     else:

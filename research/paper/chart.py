@@ -1,7 +1,7 @@
-"""One chart that tests the paper: which drive, if any, gives its Table 2.
+"""A chart that tests which drive, if any, gives the paper's Table 2.
 
 Its cells are simulated over motor torque, rotor inertia and friction, and compared with the paper's
-rates all at once. A store keeps every run: after Ctrl-C the same call goes on where it was.
+rates all at once. A store keeps every run: after Ctrl-C, the same call continues there.
 """
 
 from __future__ import annotations
@@ -36,10 +36,10 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 LEVEL = 0.05
-"""[-] One less the confidence of the region."""
+"""[-] One minus the confidence of the region."""
 
 Table = Mapping[tuple[str, str], int]
-"""How many of its 20 runs the paper has cleared, by field and layout."""
+"""Number of the paper's 20 runs that cleared, by field and layout."""
 
 
 def _table(gears: str) -> Table:
@@ -55,7 +55,7 @@ TABLES: Mapping[str, Table] = {
     "large gears": _table(paper.GEAR_MODEL),
     "small gears": _table(paper.GEAR_MODEL_OTHERWISE),
 }
-"""The nine cells of the paper's Table 2, by how the column of gears is read."""
+"""The nine cells of the paper's Table 2, by the reading of the column of gears."""
 _HITS = {cell: hits for table in TABLES.values() for cell, hits in table.items()}
 
 _DRAWS = 20_000
@@ -63,16 +63,16 @@ _DRAWS = 20_000
 _DIAGONAL = "diagonal barrier"
 
 _REAL_TORQUES = (6.0, 12.0)
-"""[N m] Of a plausible drive: the preset's torque, and twice as much."""
+"""[N m] Torques of a plausible drive: the preset's torque, and twice that."""
 
 TILES = {"agrees": GREEN, "open": "#F5EE9E", "below": SKY, "above": ORANGE}
 EXCLUDED = PALE
 
 _ABOVE = 0.25
-"""Of a tile: so that words leave the room to the points of drives."""
+"""[-] Position of text above the middle of a tile, below which are the points of drives."""
 
 _WIDE = 16.0
-"""[in] From which the legend fits in one line."""
+"""[in] Width from which the legend fits on one line."""
 
 _POINT: dict[str, Any] = {
     "markersize": 8,
@@ -84,21 +84,21 @@ _POINT: dict[str, Any] = {
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Drives:
-    """Which drives are tried, and how often."""
+    """The drives that are tried, and the numbers of runs."""
 
     torques: tuple[float, ...]
     """[N m] Of one sprocket."""
     inertias: tuple[float, ...]
-    """[kg m^2] Of the rotor of one track, at its sprocket."""
+    """[kg m^2] Moment of inertia of the rotor of one track, at its sprocket."""
     frictions: tuple[float, ...]
-    """[-] Between track and ground."""
+    """[-] Friction between track and ground."""
     runs: tuple[int, ...]
-    """Runs a cell, by layout in the order of `COLUMNS`: gears that grind cost most."""
+    """Runs per cell, by layout in the order of `COLUMNS`: gears that grind take longest."""
     most: int
-    """Runs a cell wherever those above leave the drive in agreement with the paper."""
+    """Runs per cell if the first ones leave the drive in agreement with the paper."""
 
     def settings(self) -> list[Setting]:
-        """List the drives at every friction, friction by friction."""
+        """List the drives for each friction, one friction after the other."""
         return [
             Setting(
                 name=f"{torque:g} N m, {inertia:g} kg m^2, friction {friction:g}",
@@ -120,17 +120,17 @@ _DEFAULT = Drives(
     runs=(4, 4, 2, 1),
     most=20,
 )
-"""Coarse: gears that grind in a jam until the time is over take most of it."""
+"""Coarse, because gears that grind in a jam until the end take most of the time."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Drive:
-    """What is tried: a drive on a ground."""
+    """A drive on a ground."""
 
     torque: float
     """[N m] Of one sprocket."""
     inertia: float
-    """[kg m^2] Of the rotor of one track, at its sprocket."""
+    """[kg m^2] Moment of inertia of the rotor of one track, at its sprocket."""
     friction: float
 
     @property
@@ -153,41 +153,41 @@ class DriveCell(Drive):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Verdict(Drive):
-    """What the paper's table says of one drive."""
+    """The verdict of the paper's table on one drive."""
 
     reading: str
     """As in `TABLES`."""
     deviance: float
-    """[-] Of all cells, from the table under rates that are exactly the paper's."""
+    """[-] Deviance of all cells, relative to rates that are exactly the paper's."""
     probability: float
-    """[-] Of a deviance at least as large, if the paper's robot had this drive."""
+    """[-] Probability of a deviance at least as large, if the paper's robot had this drive."""
     straight: float
-    """[-] The same without the diagonal barrier, on which a robot may turn: a side view cannot."""
+    """[-] The same without the diagonal barrier, on which a real robot may turn."""
     differing: int
-    """Cells whose rates differ, as in `Agreement`."""
+    """Number of cells whose rates differ, as in `Agreement`."""
     cells: int
     farthest: str
-    """The cells with the largest shares of the deviance, as text."""
+    """The cells that contribute most to the deviance, as text."""
 
     @property
     def is_left(self) -> bool:
-        """Whether the table leaves this drive."""
+        """Whether the table does not exclude this drive."""
         return self.probability >= LEVEL
 
 
 @dataclass(frozen=True, slots=True)
 class _Grid:
-    """Torques and inertias as tiles of equal size, for 0 has no logarithm."""
+    """Torques and inertias as tiles of equal size, because 0 has no logarithm."""
 
     torques: tuple[float, ...]
     inertias: tuple[float, ...]
 
     def tile(self, torque: float, inertia: float) -> tuple[float, float]:
-        """Return where a drive lies."""
+        """Return the coordinates of a drive."""
         return _place(torque, self.torques), _place(inertia, self.inertias)
 
     def prepare(self, ax: Axes, *, named: bool) -> None:
-        """Set limits and ticks; without names where a neighbour has them."""
+        """Set limits and ticks, without names if a neighbour has them."""
         across, up = len(self.torques), len(self.inertias)
         ax.set(xlim=(-0.5, across - 0.5), ylim=(-0.5, up - 0.5))
         ax.set_xticks(range(across), [f"{each:g}" for each in self.torques] if named else [])
@@ -196,7 +196,7 @@ class _Grid:
 
 
 def _place(value: float, grid: tuple[float, ...]) -> float:
-    """Return where a value lies among tiles: in the logarithm, and 0 on its own tile."""
+    """Return the coordinate of a value among tiles: logarithmic, with 0 on its own tile."""
     positive = [each for each in grid if each > 0.0]
     first = len(grid) - len(positive)
     if value <= 0.0 or not positive:
@@ -210,7 +210,7 @@ def _place(value: float, grid: tuple[float, ...]) -> float:
 
 _HITS_OF_PAPER = np.arange(PAPER_RUNS + 1)
 _EXACT = stats.binom.logpmf(_HITS_OF_PAPER, PAPER_RUNS, _HITS_OF_PAPER / PAPER_RUNS)
-"""[-] The logarithm of the chance of 0 to 20 runs under the rate that they give."""
+"""[-] The logarithm of the probability of 0 to 20 successes at the rate that they give."""
 
 
 def drive_cells(work: Work, drives: Drives) -> Iterator[list[DriveCell]]:
@@ -219,8 +219,8 @@ def drive_cells(work: Work, drives: Drives) -> Iterator[list[DriveCell]]:
     Yields
     ------
     list of DriveCell
-        All cells so far, after every friction, and once more when the drives that are left have
-        been tried more often.
+        All cells so far, after every friction, and once more after more runs with the drives that
+        are not excluded.
     """
     tried: dict[Setting, list[DriveCell]] = {}
     for settings in group_by(drives.settings(), "friction").values():
@@ -238,23 +238,23 @@ def drive_cells(work: Work, drives: Drives) -> Iterator[list[DriveCell]]:
 
 
 def compare_drive(rows: Sequence[DriveCell], table: Table, reading: str = "") -> Verdict:
-    """Compare the cells of one drive with a table: one likelihood ratio of all of them.
+    """Compare the cells of one drive with a table, by one likelihood ratio of all of them.
 
-    The paper has k of 20 runs in a cell, and the simulation s of n. With Jeffreys' prior our runs
-    give the rate a beta distribution, so the chance of the paper's k is beta-binomial: few runs of
-    ours make it broad, and exclude little. Minus twice the logarithm of the chances of all cells,
-    over those under rates that are exactly the paper's, is the deviance. Rates of 0 and 1 are no
-    place for its asymptotic chi-squared distribution, and so its distribution is drawn: tables that
-    the drive itself gives. A drive is left if at least one in twenty of them is as far off as the
-    paper's. The drives that are left are a region of 95 % confidence, and it is empty if no drive
-    gives the table.
+    The paper has k of 20 runs in a cell, and the simulation s of n. With Jeffreys' prior, our runs
+    give the rate a beta distribution, so the probability of the paper's k is beta-binomial; few
+    runs make it broad, and exclude little. The deviance is minus twice the logarithm of the
+    probability of all cells, relative to that for rates that are exactly the paper's. For rates of
+    0 and 1, its asymptotic chi-squared distribution does not hold, and so its distribution is
+    sampled from tables that the drive itself gives. A drive is left if at least one in twenty of
+    them is as far off as the paper's. The drives that are left are a region of 95 % confidence,
+    which is empty if no drive gives the table.
 
     Parameters
     ----------
     rows : sequence of DriveCell
-        Of one drive; cells that the table lacks are passed over.
+        The cells of one drive; those that are not in the table are ignored.
     table : mapping of pair of str to int
-        Every cell of it must be among the rows.
+        The table; all of its cells must be among the rows.
     reading : str
         The name of the table.
 
@@ -289,21 +289,21 @@ def compare_drive(rows: Sequence[DriveCell], table: Table, reading: str = "") ->
 
 
 def layouts_left(rows: Sequence[DriveCell]) -> set[str]:
-    """Name the layouts of those readings of the paper's table that leave the drive of these cells.
+    """Name the layouts of the readings of the paper's table that do not exclude the drive.
 
-    Their runs are worth repeating; more runs of others would exclude the same.
+    More runs of these are useful; more runs of others would exclude the same.
     """
     left = [table for table in TABLES.values() if compare_drive(rows, table).is_left]
     return {model for table in left for _, model in table}
 
 
 def cell_verdict(row: DriveCell, hits: int) -> str:
-    """Return whether a rate of ours agrees with one of the paper; see `Agreement`."""
+    """Return whether one of our rates agrees with one of the paper; see `Agreement`."""
     return paper.agreement(row.cleared, row.count, hits / PAPER_RUNS).verdict
 
 
 def drives_text(rows: Sequence[DriveCell], verdicts: Sequence[Verdict]) -> str:
-    """Say how many runs there are, how many drives are left, and which come nearest."""
+    """Describe the number of runs, the drives that are left, and those that come closest."""
     runs = []
     for model, cells_of in group_by(rows, "model").items():
         least, most = min(row.count for row in cells_of), max(row.count for row in cells_of)
@@ -317,7 +317,7 @@ def drives_text(rows: Sequence[DriveCell], verdicts: Sequence[Verdict]) -> str:
     table = []
     for (friction, reading), own in group_by(verdicts, "friction", "reading").items():
         left = [each.label for each in own if each.is_left]
-        # With few runs p is larger, as they exclude less; cells that differ come first therefore.
+        # Few runs exclude less and have a larger p, so drives are sorted by differing cells first.
         best = min(own, key=lambda each: (each.differing, -each.probability, each.deviance))
         table.append(
             (
@@ -339,10 +339,10 @@ def drives_text(rows: Sequence[DriveCell], verdicts: Sequence[Verdict]) -> str:
 
 
 def real_inertias() -> tuple[float, float]:
-    """[kg m^2] Return the least and the greatest rotor inertia of a plausible drive.
+    """[kg m^2] Return the smallest and the largest rotor inertia of a plausible drive.
 
-    The run-up time times the torque over the no-load speed: the declared speed of the robot, or the
-    one that was measured (Table 1).
+    It is the run-up time times the torque over the no-load speed, which is the declared or the
+    measured speed of the robot (Table 1).
     """
     outline = study_robot().outline
     radius = outline.rear_radius - outline.grouser_height
@@ -351,7 +351,7 @@ def real_inertias() -> tuple[float, float]:
 
 
 def plot_drives(rows: Sequence[DriveCell], verdicts: Sequence[Verdict]) -> Figure:
-    """Draw the rates of every layout and field over torque and inertia, and which drives are left.
+    """Draw the rates of every layout and field over torque and inertia, and the drives left.
 
     Parameters
     ----------
@@ -419,7 +419,7 @@ def _cross(work: Work, setting: Setting, runs: Sequence[int]) -> list[DriveCell]
 
 
 def _deviance(own: Mapping[tuple[str, str], DriveCell], table: Table) -> tuple[list[float], float]:
-    """Return each cell's share of the deviance, and the chance of so large a sum."""
+    """Return each cell's part of the deviance, and the probability of so large a sum."""
     chances = [_chances(own[cell].cleared, own[cell].count) for cell in table]
     deviances = [2.0 * (_EXACT - np.log(each)) for each in chances]
     shares = [float(each[hits]) for each, hits in zip(deviances, table.values(), strict=True)]
@@ -429,13 +429,13 @@ def _deviance(own: Mapping[tuple[str, str], DriveCell], table: Table) -> tuple[l
         each[rng.choice(PAPER_RUNS + 1, size=_DRAWS, p=chance)]
         for each, chance in zip(deviances, chances, strict=True)
     )
-    # Sums of the same terms in another order differ by rounding.
+    # Sums of the same terms in a different order differ by rounding.
     farther = int(np.count_nonzero(drawn >= sum(shares) - 1e-9))
     return shares, (farther + 1) / (_DRAWS + 1)
 
 
 def _chances(cleared: int, count: int) -> NDArray[np.float64]:
-    """Return the chance of 0 to 20 of the paper's runs: beta-binomial, with Jeffreys' prior."""
+    """Return the beta-binomial probability of 0 to 20 of the paper's runs, with Jeffreys' prior."""
     a, b = cleared + 0.5, count - cleared + 0.5
     chances: NDArray[np.float64] = stats.betabinom.pmf(_HITS_OF_PAPER, PAPER_RUNS, a, b)
     chances /= chances.sum()  # 1, but for rounding
@@ -518,7 +518,7 @@ def _draw_verdicts(ax: Axes, verdicts: Sequence[Verdict], grid: _Grid) -> None:
     xs, ys = (left, right, right, left, left), (low, low, high, high, low)
     ax.plot(xs, ys, color=VIOLET, linewidth=2.0)
     ax.plot(*grid.tile(PRESET.max_torque, 0.0), "o", **_POINT)
-    # The motors of the three wheels that the model has on a side.
+    # The motors of the model's three wheels on a side.
     public = PUBLIC.on(study_robot(track="public")).drivetrain
     ax.plot(*grid.tile(public.max_torque, 0.0), "^", **_POINT)
 

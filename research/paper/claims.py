@@ -1,4 +1,4 @@
-"""All claims of the paper, each with the experiment that settles it here, or why none can."""
+"""All claims of the paper, each with the experiment that tests it here, or why none can."""
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
@@ -20,14 +20,14 @@ from research.paper.performance import measure_factors
 from research.tables import markdown_table, mm
 
 _OFTEN, _SELDOM = 0.9, 0.1
-"""[-] A model clears an obstacle from the first rate on, and does not up to the second."""
+"""[-] A model clears an obstacle at rates from the first on, and does not up to the second."""
 _ALIKE = 0.9
-"""[-] A real-time factor counts as no lower than another from this ratio on."""
+"""[-] Smallest ratio at which a real-time factor counts as no lower than another one."""
 _STEP = 1e-3
-"""[s] The time step that the paper's simulator takes by default."""
+"""[s] The default time step of the paper's simulator."""
 _FIELD = "random step field"
 _HEIGHT = 0.04
-"""[m] Of the sharp edges: one that all these models clear on a wide step."""
+"""[m] Height of the sharp edges; all these models clear a wide step of this height."""
 _PAIRS = {"line of 3": "line of 3 gears", "16 all round, spaced": "16 gears all round, spaced"}
 """The paper's two layouts, with round wheels and with gears."""
 _SLOWER = "slower than"
@@ -52,11 +52,11 @@ _COSTS = (
         [("chain of 22 shoes", "16 all round, spaced")],
     ),
 )
-"""Claims on computing time: section, text, and how the first model of each pair compares."""
+"""Claims about computing time: section, text, and relation of the first model to the second."""
 
 
 class _Count(NamedTuple):
-    """How many runs of a model cleared."""
+    """Number of runs of a model that cleared."""
 
     label: str
     cleared: int
@@ -72,13 +72,13 @@ class _Count(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Check:
-    """One thing that must be so if the claim holds."""
+    """One condition that must be true if the claim holds."""
 
     what: str
     result: str
     """The figures, with counts."""
     holds: bool | None
-    """None if there are too few runs to say."""
+    """Whether it is true; None if there are too few runs to say."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -86,15 +86,15 @@ class Claim:
     """A claim with its checks."""
 
     section: str
-    """Where the paper says so."""
+    """Section of the paper."""
     text: str
     experiment: str
     checks: tuple[Check, ...] = ()
-    """None if it cannot be tested here."""
+    """The conditions; None if the claim cannot be tested here."""
 
     @property
     def verdict(self) -> str:
-        """Whether it holds: in part if only some of the checks do.
+        """Whether it holds; in part, if only some of the checks do.
 
         Examples
         --------
@@ -146,11 +146,11 @@ def check_clears(
     Parameters
     ----------
     what : str
-        What must be so.
+        The condition.
     counts : iterable of str, int and int
-        Label, runs that cleared and all runs of each.
+        Label, number of cleared runs and number of all runs of each model.
     never : bool
-        Whether they must not clear.
+        Whether the models must not clear.
 
     Examples
     --------
@@ -170,9 +170,9 @@ def check_fewer(what: str, less: tuple[str, int, int], more: tuple[str, int, int
     Parameters
     ----------
     what : str
-        What must be so.
+        The condition.
     less, more : tuple of str, int and int
-        Label, runs that cleared and all runs.
+        Label, number of cleared runs and number of all runs.
 
     Examples
     --------
@@ -190,14 +190,14 @@ def check_fewer(what: str, less: tuple[str, int, int], more: tuple[str, int, int
 
 
 def claims(work: Work, shaken: Sequence[Shaking]) -> list[Claim]:
-    """Settle every claim by runs.
+    """Test every claim by runs.
 
     Parameters
     ----------
     work : Work
-        By which means.
+        How runs are made.
     shaken : sequence of Shaking
-        What came of eq. (1).
+        The results for eq. (1).
     """
     print("Claims", flush=True)
     return [
@@ -245,7 +245,7 @@ def gears_end_seizure(work: Work) -> Claim:
 
 
 def force_is_flat(work: Work) -> Claim:
-    """Push a robot along by a force, on the flat and off it, and compare it with a belt."""
+    """Push a robot with a force on flat and other ground, and compare it with a belt."""
     grounds: Mapping[str, Terrain] = {
         "flat": c2d.terrains.flat(),
         "slope of 35 deg": c2d.terrains.ramp(TABLE_1.declared_max_slope),
@@ -275,7 +275,7 @@ def force_is_flat(work: Work) -> Claim:
 
 
 def geometry() -> Claim:
-    """Compare how far the lower runs of the layouts lie within the track as built; no run."""
+    """Compare how far the lower runs of layouts are inside the track as built, without runs."""
     known, bare, checks = layouts(), study_robot(), []
     for all_round, line in (
         ("16 all round, spaced", "line of 3"),
@@ -301,22 +301,22 @@ def geometry() -> Claim:
 
 
 def unevenness(robot: c2d.Robot) -> tuple[float, float]:
-    """[m] Measure how deep the lower run of wheels lies within that of the track as built.
+    """[m] Measure the depth of the lower run of wheels inside that of the track as built.
 
     Parameters
     ----------
     robot : Robot
-        With wheels, and equal ends.
+        A robot with wheels and equal ends.
 
     Returns
     -------
     tuple of 2 floats
-        Greatest and mean gap between the ground under the end axles and the wheels; where there is
-        a slot, up to the belly.
+        Largest and mean gap between the ground under the end axles and the wheels, or up to the
+        belly in a slot.
 
     Examples
     --------
-    Wheels of radius r that stand p apart leave r - sqrt(r^2 - p^2 / 4):
+    Wheels of radius r at a distance p leave r - sqrt(r^2 - p^2 / 4):
 
     >>> import crawler2d as c2d
     >>> deep, _ = unevenness(c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(5)))
@@ -337,7 +337,7 @@ def unevenness(robot: c2d.Robot) -> tuple[float, float]:
 
 
 def shaking_of_gears(work: Work, shaken: Sequence[Shaking]) -> tuple[Claim, Claim]:
-    """Compare the shaking of gears in the runs of eq. (1), and with that of round wheels."""
+    """Compare the vibration of gears in the runs of eq. (1), and with that of round wheels."""
     by_place = {(each.count, round(6 * each.fraction)): each for each in shaken}
     third = []
     for count in (3, 5):
@@ -439,7 +439,7 @@ def _chains_stick(work: Work) -> Claim:
 def _cross(
     work: Work, setting: Setting, grounds: Mapping[str, Any], names: Sequence[str]
 ) -> FigureDataset:
-    """Drive layouts without flippers over some grounds."""
+    """Drive layouts without flippers over several grounds."""
     models = models_of(names, setting, flippers=False)
     return work.success_rate(grounds, models, work.design.claim_repeats)
 
@@ -451,7 +451,7 @@ def _count(runs: FigureDataset, model: str, ground: str, label: str = "") -> _Co
 
 
 def _mass_sticks(work: Work) -> Claim:
-    """Drive lines of round wheels over step fields with twice the mass, and motors to match."""
+    """Drive lines of round wheels over step fields with twice the mass and stronger motors."""
     names = ("line of 3", "line of 5")
     motors = replace(PRESET, max_torque=2.0 * PRESET.max_torque)
     models = models_of(names, motors)
@@ -477,13 +477,13 @@ def _mass_sticks(work: Work) -> Claim:
 
 
 def _over_fields(work: Work, models: Mapping[str, Any], friction: float) -> FigureDataset:
-    """Drive robots over as many fields as Table 2 has, and the same ones."""
+    """Drive robots over the fields of Table 2."""
     field = {_FIELD: c2d.terrains.random_stepfield(friction=friction)}
     return work.success_rate(field, models, work.design.field_repeats)
 
 
 def _heavier(robot: c2d.Robot, motors: float) -> c2d.Robot:
-    """Double all masses of a robot; multiply the torque of its motors and of its arms' with it."""
+    """Double all masses of a robot, and multiply the torque of all its motors by a factor."""
     arms = robot.flippers
     return replace(
         robot,
@@ -498,7 +498,7 @@ def _heavier(robot: c2d.Robot, motors: float) -> c2d.Robot:
 
 
 def _odometry_of_gears(work: Work) -> Claim:
-    """Measure how far the odometry of gears is off, with the radius that the paper takes."""
+    """Measure the error of the odometry of gears with the radius that the paper uses."""
     runs = _drive_level(
         work, c2d.studies.odometry, [name for pair in _PAIRS.items() for name in pair]
     )

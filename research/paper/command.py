@@ -1,7 +1,7 @@
 """The paper, reproduced: its Tables 1 to 3, eq. (1), its claims and its figures.
 
-Everything is simulated under settings that were chosen beforehand, and compared with what the paper
-has. A store keeps every run: after Ctrl-C the same call goes on where it was.
+Everything is simulated with settings that were chosen beforehand, and compared with the paper. A
+store keeps every run: after Ctrl-C, the same call continues there.
 """
 
 from __future__ import annotations
@@ -29,16 +29,16 @@ STORE = "paper.sqlite"
 """The file that keeps every run."""
 
 _SLOWEST = {"24 gears all round", "chain of 22 shoes"}
-"""Layouts of ours whose runs take longer than those of all others together: they come last."""
+"""Our layouts whose runs take longer than those of all others together; they come last."""
 
 _ORDER = (
     *("chosen beforehand", "table 2", "all layouts", "failures", "table 1", "table 3"),
     *("highest obstacles", "real-time factors", "equation (1)", "claims", "checks", "figures"),
 )
-"""Of the sections in the page."""
+"""Order of the sections in the page."""
 
 _REPLAYS = "replays_paper"
-"""The folder of the pages that replay Figs. 4 and 5: the study empties its own."""
+"""Folder of the pages that replay Figs. 4 and 5; the study empties its own folder."""
 
 Sections = Iterator[tuple[str, str]]
 """Names of sections with their text."""
@@ -46,20 +46,20 @@ Sections = Iterator[tuple[str, str]]
 
 @dataclass(slots=True)
 class Pages:
-    """What is written: the page of all sections, after every part; tables, pictures, replays.
+    """The output: the page of all sections, written after every part; tables, pictures, replays.
 
     Attributes
     ----------
     job : Job
-        What was asked for.
+        The study with its options.
     work : Work
-        How runs are made, and how many.
+        How runs are made, and their numbers.
     sections : dict of str to str
-        By name, as far as they are done.
+        Finished sections by name.
     fields : list of pair of Setting and FigureDataset
-        The runs of Table 2, so far.
+        The finished runs of Table 2.
     blocks : dict of str to FigureDataset
-        Those over the parallelepiped of Table 3, by setting.
+        The runs over the parallelepiped of Table 3, by setting.
     """
 
     job: Job
@@ -70,7 +70,7 @@ class Pages:
 
     @property
     def into(self) -> Path | None:
-        """Another page, written by hand, with marks where sections go."""
+        """Another page, written by hand, with marks for sections."""
         page: Path | None = self.job.options.into
         return page
 
@@ -91,7 +91,7 @@ class Pages:
         self.splice({"how it was made": self._head(), name: text})
 
     def splice(self, parts: Mapping[str, str]) -> None:
-        """Put parts between their marks in the other page."""
+        """Insert parts between their marks in the other page."""
         if self.into is not None:
             splice_into(self.into, parts)
 
@@ -100,7 +100,7 @@ class Pages:
         self.job.write_rows(**{f"paper_{name}": rows for name, rows in tables.items()})
 
     def draw(self, **drawings: Callable[[], Figure]) -> None:
-        """Draw figures as paper_NAME.png, also next to the other page if that shows them."""
+        """Draw figures as paper_NAME.png, also next to the other page if it shows them."""
         for name, drawing in drawings.items():
             shown = self.into is not None and f"paper_{name}.png" in self.into.read_text("utf-8")
             also = [self.into.parent] if self.into is not None and shown else []
@@ -124,7 +124,7 @@ def _chosen(_work: Work, _pages: Pages) -> Sections:
 
 
 def _fields(work: Work, pages: Pages, columns: Collection[str]) -> Sections:
-    """Make Table 2 with the layouts that stand for some columns, "" for those that are ours."""
+    """Make Table 2 with the layouts for some columns, where "" means our own layouts."""
     chosen = work.design.field_layouts or tuple(layouts())
     names = [name for name in chosen if table_2.COLUMNS.get(name, "") in columns]
     for slow in (False, True):
@@ -179,7 +179,7 @@ class _Part(NamedTuple):
 
     name: str
     option: str
-    """By which ``--table`` chooses it."""
+    """Value of ``--table`` that selects it."""
     make: Callable[[Work, Pages], Sections]
 
 
@@ -194,11 +194,11 @@ _PARTS = (
     _Part("Table 2, gears read otherwise", "2", partial(_fields, columns={GEAR_MODEL_OTHERWISE})),
     _Part("Table 2, other layouts", "2", partial(_fields, columns={""})),
 )
-"""What the paper itself has comes first: small gears all round take longest."""
+"""Layouts of the paper come first; small gears all round take longest."""
 
 
 def add_page_option(parser: argparse.ArgumentParser, text: str) -> None:
-    """Add the option of a page to splice into."""
+    """Add the option for a page into which parts are spliced."""
     parser.add_argument("--into", type=Path, default=None, help=text)
 
 

@@ -1,6 +1,6 @@
-"""How much of the paper is repeated, with which layouts and motors, and how runs are made.
+"""The size of the reproduction, its layouts and motors, and how runs are made.
 
-Which layout stands for which row follows from the text of the paper, not from what comes out.
+The layout for each row follows from the text of the paper, not from results.
 """
 
 import math
@@ -17,13 +17,13 @@ from crawler2d.sweeps.figure_dataset import FigureDataset
 from research import paper
 from research.models import StudyModel, study_models, study_robot
 
-# [-] No interval is so narrow: the number of runs decides.
+# [-] No interval is so narrow, so the number of runs decides.
 _NO_WIDTH = 1e-9
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Design:
-    """How much is simulated."""
+    """The size of the study."""
 
     field_repeats: int
     """Runs per cell of Table 2; 20 in the paper."""
@@ -36,7 +36,7 @@ class Design:
     driving_repeats: int
     """Runs per model on level ground."""
     angles: tuple[float, ...]
-    """[rad] Of the slopes; with the declared and the measured one of Table 1."""
+    """[rad] Angles of slopes, besides the declared and the measured one of Table 1."""
     slope_repeats: int
     """Runs per model and slope."""
     computing_repeats: int
@@ -74,19 +74,19 @@ QUICK = Design(
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Work:
-    """The reproduction as a whole: how much, and by what means."""
+    """The whole reproduction: its size, and how runs are made."""
 
     store: Path
     """The file that keeps every run."""
     design: Design = FULL
     seed: int = 0
-    """Of all draws."""
+    """Seed of all draws."""
     threads: int | None = None
     """See `simulate_many`."""
     progress: bool = True
     """Whether to show a bar for each part."""
     tried: Counter[str] = field(default_factory=Counter)
-    """How many "settings" the studies have tried, and with how many "runs"."""
+    """Numbers of "settings" and "runs" that the studies have tried."""
 
     @property
     def sampling(self) -> Sampling:
@@ -96,40 +96,40 @@ class Work:
         )
 
     def sampling_of(self, repeats: int) -> RateSampling:
-        """Return the keywords of a study of rates whose cells all have the same number of runs."""
+        """Return the keywords for a study of rates with the same number of runs in all cells."""
         until = c2d.Until(width=_NO_WIDTH, min_runs=repeats, max_runs=repeats)
         return RateSampling(**self.sampling, until=until)
 
     def success_rate(
         self, grounds: Mapping[str, Terrain], models: Mapping[str, Any], repeats: int
     ) -> FigureDataset:
-        """Drive robots over some grounds, each as often."""
+        """Drive robots over several grounds, with the same number of runs each."""
         base, options = climb(next(iter(grounds.values()))), self.sampling_of(repeats)
         return self.count(
             c2d.studies.success_rate(base, terrains=grounds, models=models, **options)
         )
 
     def count(self, figures: FigureDataset) -> FigureDataset:
-        """Count what a study has tried, and return it; what two studies try counts twice."""
+        """Count the runs of a study, and return it; runs of two studies count twice."""
         self.tried.update({name: figures.attrs[name] for name in ("settings", "runs")})
         return figures
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Setting:
-    """What the motors can do, and how the ground grips."""
+    """Limits of the motors, and friction of the ground."""
 
     name: str
     max_torque: float
-    """[N m] Of one sprocket; of one wheel if each has its own motor."""
+    """[N m] Torque of one sprocket, or of one wheel if each has its own motor."""
     friction: float
-    """[-] Between track and ground."""
+    """[-] Friction between track and ground."""
     reason: str
-    """Where it comes from."""
+    """Its source."""
     a_wheel: bool = False
-    """Whether every wheel has a motor of its own; a track without wheels has one sprocket."""
+    """Whether every wheel has its own motor; a track without wheels has one sprocket."""
     rotor_inertia: float | None = None
-    """[kg m^2] Of the motor of one track, at its sprocket; None takes the robot's."""
+    """[kg m^2] Rotor inertia of one track, at its sprocket; None takes the robot's."""
 
     def on(self, robot: c2d.Robot) -> c2d.Robot:
         """Give a robot these motors."""
@@ -177,14 +177,14 @@ _SPACED_GEARS = "16 gears all round, spaced"
 
 
 class Reading(NamedTuple):
-    """Which layout stands for which row or column of the paper."""
+    """The layout for a row or column of the paper."""
 
     row: str
     """As in the paper's tables."""
     layout: str
     """One of `layouts`."""
     reason: str
-    """From the text of the paper alone."""
+    """Reason, only from the text of the paper."""
 
 
 READINGS = (
@@ -218,11 +218,11 @@ READINGS = (
         "our choice: it has the outline and the grousers of the robot",
     ),
 )
-"""From the text; all other layouts are ours."""
+"""From the text of the paper; all other layouts are ours."""
 
 
 def layouts() -> dict[str, StudyModel]:
-    """List all layouts by name: the track models of the study, and small gears with spaces.
+    """List all layouts by name: the track models of the study, and spaced small gears.
 
     Examples
     --------
@@ -236,7 +236,7 @@ def layouts() -> dict[str, StudyModel]:
 def models_of(
     names: Iterable[str], setting: Setting = PRESET, *, flippers: bool = True
 ) -> dict[str, Any]:
-    """Put layouts with the motors of a setting on the robot, as studies take their `models`."""
+    """Put layouts with the motors of a setting on the robot, as `models` for studies."""
     known, robot = layouts(), study_robot("built" if flippers else None)
     return {name: {"robot": setting.on(known[name].on(robot))} for name in names}
 

@@ -1,4 +1,4 @@
-"""The paper's eq. (1) and its Figs. 1 to 14: from the models, and from runs that stopped."""
+"""The paper's eq. (1) and Figs. 1 to 14, from models and from runs that stopped."""
 
 from __future__ import annotations
 
@@ -33,19 +33,19 @@ _PHASED: dict[str, Track] = {
     **{f"line of {count}": c2d.LineOfWheels(count, wheel=_GEAR) for count in (2, 3, 4, 5, 9)},
     **{f"{count} all round": replace(_SMALL, count=count) for count in (16, 24)},
 }
-"""Gears whose angles are compared with the formula; those of the flippers are, too."""
+"""Gears whose angles are compared with the formula, as are those of the flippers."""
 
 _SHAKEN = tuple((count, fraction) for count in (3, 5) for fraction in (0.0, 1.0 / 3.0, 0.5))
-"""Wheels of a line and phase fraction: in step, as in eq. (1), at a half."""
+"""Number of wheels in a line, and phase fraction: in step, as in eq. (1), or a half."""
 
-# [s] When the speed is steady, and how long one looks at it: 17 grouser pitches at 0.4 m/s.
+# [s] Time until the speed is steady, and duration of the measurement: 17 pitches at 0.4 m/s.
 _STEADY, _LOOK = 3.0, 2.0
-# [m] Corners that are as far from the axle lie this close to one circle.
+# [m] Corners at the same distance from the axle are this close to one circle.
 _SAME = 1e-9
 
 _COLUMNS = 3
 _STUCK = {4: LWA_ROUND, 5: CWA_ROUND}
-"""The figures that runs stand for, and which row of the paper each shows."""
+"""The figures that runs represent, with the row of the paper for each."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -54,36 +54,36 @@ class Phase:
 
     model: str
     count: int
-    """Gears of one side, with those of the flipper."""
+    """Number of gears of one side, with those of the flipper."""
     off: float
     """[rad] Largest difference from the formula."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Shaking:
-    """How a line of gears shakes the robot on level ground at a steady speed."""
+    """Vibration of the robot on a line of gears on level ground at a steady speed."""
 
     count: int
     fraction: float
-    """[-] Of the angle between two grousers, from wheel to wheel: a third in eq. (1)."""
+    """[-] Fraction of the angle between two grousers, from wheel to wheel: a third in eq. (1)."""
     swing: float
-    """[m] From the lowest to the highest position of the chassis."""
+    """[m] Range of the height of the chassis."""
     rocking: float
-    """[rad] From the smallest to the greatest angle of the chassis."""
+    """[rad] Range of the angle of the chassis."""
     vibration: float
     """[m/s^2] Vertical acceleration over the whole run, root mean square."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Stuck:
-    """A run that stands for a figure of the paper."""
+    """A run that represents a figure of the paper."""
 
     figure: int
     model: str
     where: str
     """Setting and obstacle, in words."""
     run: c2d.Run
-    """With its history."""
+    """The run with its history."""
 
     @property
     def file(self) -> str:
@@ -98,7 +98,7 @@ class Drawing(NamedTuple):
     caption: str
     track: Track
     view: str = "robot"
-    """"robot", "wheel" for its rearmost wheel alone, or "angle" for that with theta."""
+    """"robot", "wheel" for only its rearmost wheel, or "angle" for the same with theta."""
 
 
 def _drawings() -> tuple[Drawing, ...]:
@@ -129,7 +129,7 @@ _OTHER_FIGURES = {
     "15 to 17, 19": "pictures of runs of the simulator; those of Table 2 are runs here",
     "18": "photographs of the real robot",
 }
-"""What the others show."""
+"""Contents of the other figures."""
 
 
 def phases(work: Work) -> list[Phase]:
@@ -144,7 +144,7 @@ def phases(work: Work) -> list[Phase]:
 
 
 def off_formula(number: int, angle: float, pitch: float) -> float:
-    """[rad] Measure how far an angle is off eq. (1), x = theta / 3 n, up to whole grousers.
+    """[rad] Return the deviation of an angle from eq. (1), x = theta / 3 n, up to whole grousers.
 
     Examples
     --------
@@ -156,7 +156,7 @@ def off_formula(number: int, angle: float, pitch: float) -> float:
 
 
 def gear_angles(run: c2d.Run) -> list[tuple[int, float, float]]:
-    """Read the angles of all gears off their outlines, before anything has turned.
+    """Find the angles of all gears from their outlines at the start.
 
     Returns
     -------
@@ -195,7 +195,7 @@ def shaking(work: Work) -> list[Shaking]:
 
 
 def equation_text(phases: Sequence[Phase], shaken: Sequence[Shaking]) -> str:
-    """Say how the gears' starting angles compare with eq. (1), and how much they shake."""
+    """Compare the gears' starting angles with eq. (1), and write how much they shake."""
     count = 2 * sum(phase.count for phase in phases)
     off = max(phase.off for phase in phases)
     table = [
@@ -221,19 +221,19 @@ def equation_text(phases: Sequence[Phase], shaken: Sequence[Shaking]) -> str:
 
 
 def stuck_runs(tables: Mapping[str, FigureDataset]) -> list[Stuck]:
-    """Take, for each figure, the first run that seized with an edge between two wheels.
+    """Choose for each figure the first run that seized with an edge between two wheels.
 
     Parameters
     ----------
     tables : mapping of str to FigureDataset
-        What was run over the parallelepiped of Table 3, by setting, with the dimensions `model`,
-        `height` and `repeat`: a sharp corner on level ground, as in the figures.
+        Runs over the parallelepiped of Table 3, by setting, with the dimensions `model`, `height`
+        and `repeat`: a sharp corner on level ground, as in the figures.
 
     Returns
     -------
     list of Stuck
-        Of the first setting in which there is one, the lowest height, the first repeat; a figure
-        without such a run is left out.
+        From the first setting with such a run, at the lowest height, the first repeat. Figures
+        without such a run are left out.
     """
     models = {reading.row: reading.layout for reading in READINGS}
     stuck = []
@@ -277,7 +277,7 @@ def plot_layouts() -> Figure:
 
 
 def plot_stuck(stuck: Sequence[Stuck]) -> Figure:
-    """Draw the ends of the runs that stand for Figs. 4 and 5, one panel each."""
+    """Draw the ends of the runs that represent Figs. 4 and 5, one panel each."""
     figure, axes = make_panels(1, len(stuck), (6.5 * len(stuck), 4.2))
     for ax, each in zip(axes.flat, stuck, strict=True):
         run = each.run
@@ -290,7 +290,7 @@ def plot_stuck(stuck: Sequence[Stuck]) -> Figure:
 
 
 def figures_text(stuck: Sequence[Stuck], folder: str) -> str:
-    """List the figures: what is drawn, what is replayed from a folder, what can be neither."""
+    """List the figures that are drawn, those replayed from a folder, and the others."""
     rows = [(str(each.number), each.caption, "drawn") for each in DRAWINGS]
     replayed = {str(each.figure): f"replayed in `{folder}/{each.file}`" for each in stuck}
     rows += [(number, what, replayed.get(number, "")) for number, what in _OTHER_FIGURES.items()]
@@ -312,18 +312,18 @@ def _runs(robots: list[c2d.Robot], work: Work) -> list[c2d.Run]:
 
 
 def _grouser_angle(outline: ArrayLike) -> tuple[float, float]:
-    """Read the angle of a grouser off the outline of a gear, and theta of eq. (1).
+    """Find the angle of a grouser and theta of eq. (1) from the outline of a gear.
 
     Parameters
     ----------
     outline : array_like, shape (n, 2)
-        [m] Corners about the axle; those at the tips, two to a grouser, are the farthest.
+        [m] Corners relative to the axle; those at the tips, two per grouser, are the farthest.
 
     Returns
     -------
     tuple of 2 floats
-        [rad] From the x axis to the middle of a grouser, up to whole grousers; and theta, from one
-        grouser to the next.
+        [rad] Angle from the x axis to the middle of a grouser, up to whole grousers; and theta,
+        from one grouser to the next.
     """
     corners = np.asarray(outline)
     far = np.hypot(*corners.T)
@@ -335,7 +335,7 @@ def _grouser_angle(outline: ArrayLike) -> tuple[float, float]:
 
 
 def _draw_wheel(ax: Axes, robot: c2d.Robot, *, with_angle: bool) -> None:
-    """Draw the rearmost wheel alone; mark the angle between two of its grousers."""
+    """Draw only the rearmost wheel; mark the angle between two of its grousers."""
     scene = Scene.of_robot(c2d.Scenario(robot, c2d.terrains.flat()).to_json())
     x, radius = -0.5 * robot.outline.axle_distance, robot.outline.rear_radius
     wheel = scene.outline(0, 0) - (x, 0.0)

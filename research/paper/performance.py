@@ -14,33 +14,33 @@ from research.tables import gaps, group_by, markdown_table, mm, percent
 
 _PAPER = {row.model: row for row in TABLE_3}
 ROWS = {reading.row: reading.layout for reading in READINGS if reading.row in _PAPER}
-"""By row of Table 3, the layout that stands for it."""
+"""The layout for each row of Table 3."""
 
 _THICKNESS = 0.1
-"""[m] Of the parallelepiped: that of the barrier in the fields. The paper gives none."""
+"""[m] Thickness of the parallelepiped: that of barriers in fields, as the paper has none."""
 _SPAN = 5.0
-"""[s] Simulated for one measurement of computing time."""
+"""[s] Simulated time of one measurement of computing time."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Driving:
-    """How a layout drives on level ground, under the preset."""
+    """Driving of a layout on level ground, with the preset."""
 
     row: str
-    """Of Table 3."""
+    """Row of Table 3."""
     model: str
     full_speed: float
-    """[m/s] At full command: the 1.39 m/s that the maker declares."""
+    """[m/s] Speed with the command of 1.39 m/s, which the maker declares."""
     full_speed_limit: str
-    """What limits it, found by doubling command, torque and friction."""
+    """Its limit, found by doubling command, torque and friction."""
     speed: float
-    """[m/s] Commanded the speed that the paper measured, 0.4 m/s."""
+    """[m/s] Speed with a command of 0.4 m/s, which the paper measured."""
     speed_limit: str
     braking: float
     """[m] Braking distance from there."""
     braking_limit: str
     acceleration: float
-    """[m/s^2] To there."""
+    """[m/s^2] Acceleration to that speed."""
     acceleration_limit: str
 
 
@@ -58,14 +58,14 @@ class Height:
     gaps: tuple[float, ...]
     """[m] Lower heights that fewer cleared."""
     limit: str
-    """How most runs end on the next height."""
+    """Outcome of most runs at the next height."""
     repeats: int
     """Runs per height."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Slope:
-    """The steepest slope that a layout climbs without its flippers, under the preset's motors."""
+    """The steepest slope that a layout climbs without flippers, with the preset's motors."""
 
     friction: float
     row: str
@@ -75,17 +75,17 @@ class Slope:
     steepest: float
     """[rad] Greatest angle that at least half of the runs climbed; nan if there is none."""
     declared: float
-    """[-] Share that climbed the 35 degrees that the maker declares."""
+    """[-] Fraction that climbed the 35 degrees that the maker declares."""
     measured: float
-    """[-] Share that climbed the 45 degrees that the paper measured."""
+    """[-] Fraction that climbed the 45 degrees that the paper measured."""
     limit: str
-    """How most runs end on the next slope."""
+    """Outcome of most runs on the next slope."""
     repeats: int
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Computing:
-    """Simulated time by processor time, on one thread of this machine."""
+    """Ratio of simulated time to processor time, on one thread of this machine."""
 
     row: str
     model: str
@@ -98,7 +98,7 @@ class Computing:
     in_field: float
     """[-] Driving in a random step field."""
     moved: float
-    """[m] How far it came there."""
+    """[m] Distance that it drove there."""
 
 
 def driving(work: Work) -> list[Driving]:
@@ -127,7 +127,7 @@ def driving(work: Work) -> list[Driving]:
 
 
 def highest_obstacles(work: Work) -> tuple[list[Height], dict[str, FigureDataset]]:
-    """Find the highest parallelepiped, in every setting; returns the runs, too, by setting."""
+    """Find the highest parallelepiped in every setting; also return the runs by setting."""
     heights, repeats = work.design.heights, work.design.height_repeats
     rows, tables = [], {}
     for setting in SETTINGS:
@@ -157,7 +157,7 @@ def highest_obstacles(work: Work) -> tuple[list[Height], dict[str, FigureDataset
 
 
 def steepest_slopes(work: Work) -> list[Slope]:
-    """Find the steepest slope with the preset's friction, and with the least that 45 degrees need.
+    """Find the steepest slope with the preset's friction, and with the least needed for 45 degrees.
 
     The flippers are left off, because raised by 0.8 rad they would touch the slope first.
     """
@@ -189,7 +189,7 @@ def steepest_slopes(work: Work) -> list[Slope]:
 
 
 def computing(work: Work) -> list[Computing]:
-    """Measure how fast the rows of Table 3 are simulated: standing, driving, in a field."""
+    """Measure the real-time factor of the rows of Table 3: standing, driving, and in a field."""
     print("Table 3, real-time factor", flush=True)
     models = models_of(ROWS.values())
     level, rough = (

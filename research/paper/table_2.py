@@ -1,4 +1,4 @@
-"""The paper's Table 2: every layout over random step fields, where and why runs fail."""
+"""The paper's Table 2: every layout over random step fields, and where and why runs fail."""
 
 from __future__ import annotations
 
@@ -29,13 +29,13 @@ FIELDS: Mapping[str, RandomStepfield] = {
     "horizontal barrier": c2d.terrains.stepfield_with_barrier(),
     "diagonal barrier": c2d.terrains.stepfield_with_barrier(yaw=math.radians(45.0)),
 }
-"""By the paper's names. It gives no dimensions: these are the defaults, and half a right angle."""
+"""By the paper's names. It has no dimensions: these are the defaults, and half a right angle."""
 
 COLUMNS = {reading.layout: reading.row for reading in READINGS if reading.row in TABLE_2[0].columns}
-"""By layout, the column of Table 2 that it stands for."""
+"""The column of Table 2 for each layout."""
 
 PLACES = ("before", "at", "beyond")
-"""Where a robot ended, as seen from the barrier."""
+"""Where a robot ended, relative to the barrier."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -47,7 +47,7 @@ class FieldCell:
     """As in `FIELDS`."""
     model: str
     column: str
-    """The column of Table 2 that it stands for; "" if it is ours."""
+    """Its column of Table 2; "" if the layout is ours."""
     cleared: int
     count: int
     """Runs with a result."""
@@ -58,7 +58,7 @@ class FieldCell:
     others: str
     """Outcomes of the runs that did not clear, with their number."""
     computing_time: float
-    """[s] Of all runs on one thread."""
+    """[s] Computing time of all runs on one thread."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -90,29 +90,29 @@ class Failure:
     repeat: int
     outcome: str
     mechanism: str
-    """How the ground that holds it is held; "" if it did not stop, or none is."""
+    """Mechanism that holds the ground inside the track; "" without a stop or such ground."""
     carrier: str
-    """What carries the track that holds that ground: "chassis" or "front flipper"; "" if none."""
+    """Carrier of the track that holds that ground: "chassis" or "front flipper"; "" if none."""
     x: float
     """[m] Position of the chassis where it stopped, or at the end."""
     ground_x: float
-    """[m] Where that ground is; nan if there is none."""
+    """[m] Position of that ground; nan if there is none."""
     place: str
     """One of `PLACES`; "" in a field without a barrier."""
     sentence: str
     """The sentence of the diagnosis; "" if it did not stop."""
     identity: str
-    """Of its scenario, by which the store finds it."""
+    """Identity of its scenario, by which the store finds it."""
 
 
 def cross_fields(work: Work, names: Sequence[str]) -> Iterator[tuple[Setting, FigureDataset]]:
-    """Drive some layouts over the fields, in one setting after the other.
+    """Drive some layouts over the fields, one setting after the other.
 
     Yields
     ------
     tuple of Setting and FigureDataset
-        Dimensions `model`, `terrain` and `repeat`; every run has a field of its own, the same for
-        every layout and setting.
+        Dimensions `model`, `terrain` and `repeat`; every run has its own field, the same for every
+        layout and setting.
     """
     for setting in SETTINGS if names else ():
         print(f"Table 2, {setting.name}: {', '.join(names)}", flush=True)
@@ -126,7 +126,7 @@ def cross(setting: Setting, names: Collection[str], work: Work, repeats: int) ->
 
 
 def cells(setting: Setting, runs: FigureDataset) -> list[FieldCell]:
-    """Count how the runs of `cross_fields` ended, one row per layout and field."""
+    """Count the outcomes of the runs of `cross_fields`, with one row per layout and field."""
     rows = []
     for place in cells_of(runs, "model", "terrain"):
         own = runs.sel(place)
@@ -171,14 +171,14 @@ def compare(rows: Sequence[FieldCell]) -> list[Comparison]:
 
 
 def barrier_of(field: RandomStepfield, gauge: float) -> tuple[float, float] | None:
-    """Return where the barrier of a field begins and ends, or None if there is none.
+    """Return the beginning and end of the barrier of a field, or None if there is none.
 
     Parameters
     ----------
     field : RandomStepfield
-        With its barrier across the middle.
+        The field, with its barrier across the middle.
     gauge : float
-        [m] Between the tracks, which meet a turned barrier one after the other.
+        [m] Distance between the tracks, which meet a turned barrier one after the other.
 
     Returns
     -------
@@ -200,7 +200,7 @@ def barrier_of(field: RandomStepfield, gauge: float) -> tuple[float, float] | No
 
 
 def place_of(x: float, half_length: float, barrier: tuple[float, float] | None) -> str:
-    """Say where a track of some half length [m] about x [m] is, as seen from a barrier.
+    """Return where a track with a half length [m] about x [m] is, relative to a barrier.
 
     Flippers are left out: stretched out, they reach farther ahead.
 
@@ -217,14 +217,14 @@ def place_of(x: float, half_length: float, barrier: tuple[float, float] | None) 
 
 
 def failures(tables: Iterable[tuple[Setting, FigureDataset]], store: Path) -> list[Failure]:
-    """List the runs of `cross_fields` that did not clear, with what the store knows of them.
+    """List the runs of `cross_fields` that did not clear, with details from the store.
 
     Parameters
     ----------
     tables : iterable of Setting and FigureDataset
-        What was made under each setting, with the dimensions `model`, `terrain` and `repeat`.
+        The runs of each setting, with the dimensions `model`, `terrain` and `repeat`.
     store : Path
-        Where the runs are.
+        The store of the runs.
     """
     failed: dict[str, tuple[Setting, str, str, int]] = {}
     for setting, table in tables:
@@ -240,7 +240,7 @@ def failures(tables: Iterable[tuple[Setting, FigureDataset]], store: Path) -> li
 
 
 def chosen_text() -> str:
-    """List what was chosen before any run: layouts for rows, and settings."""
+    """List the choices before any run: layouts for rows, and settings."""
     settings = [
         (
             each.name,
@@ -298,7 +298,7 @@ def layouts_text(rows: Sequence[FieldCell]) -> str:
 
 
 def failures_text(failed: Sequence[Failure], models: Collection[str]) -> str:
-    """Say where and why runs failed: a sum for every setting, and rows for some layouts."""
+    """Describe where and why runs failed: a sum for every setting, and rows for some layouts."""
     sums, table = [], []
     for setting, runs in group_by(failed, "setting").items():
         with_barrier = [run for run in runs if run.place]

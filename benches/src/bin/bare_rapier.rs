@@ -17,7 +17,7 @@ struct Job {
     sample_every: usize,
 }
 
-/// How finely the engine steps, and what the ground is made of.
+/// Steps of the engine, and kind of ground.
 #[derive(Deserialize)]
 struct Settings {
     /// [s] Time of a step.
@@ -30,7 +30,7 @@ struct Settings {
     ground: GroundKind,
 }
 
-/// What the ground is made of.
+/// The kind of ground.
 #[derive(Deserialize, PartialEq)]
 #[serde(rename_all = "lowercase")]
 enum GroundKind {
@@ -40,7 +40,7 @@ enum GroundKind {
     Profile,
 }
 
-/// As `benches/adapters/planar.py` has it.
+/// The scene, as in `benches/adapters/planar.py`.
 #[derive(Deserialize)]
 struct Scene {
     bodies: Vec<Body>,
@@ -61,7 +61,7 @@ struct Body {
     angle: f64,
     mass: f64,
     inertia: f64,
-    /// [m] Of its circle, 0 if there is none.
+    /// [m] Radius of its circle, 0 without a circle.
     radius: f64,
     polygons: Vec<Polygon>,
 }
@@ -73,7 +73,7 @@ struct Pin {
     b: usize,
     pa: [f64; 2],
     pb: [f64; 2],
-    /// [rad/s] Of b relative to a.
+    /// [rad/s] Speed of b relative to a.
     speed: f64,
     /// [N m] Torque limit.
     torque: f64,
