@@ -19,14 +19,15 @@ from tests.shared import ROBOT, SOAK
 if TYPE_CHECKING:
     from tests.fuzz.standing_child import StandingChildren
 
-# A process that a shell starts in the background ignores Ctrl-C, and so would those that it starts.
+# A background process of a shell ignores Ctrl-C, and so would its child processes.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
-# Of the many processes that import the package the first writes its byte code, for all others.
+# The first of many processes that import the package writes its byte code for all others.
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
-# The next run of the tests has not to rewrite their assertions again.
+# The next run of the tests need not rewrite their assertions again.
 sys.dont_write_bytecode = False
-# While tests are collected nearly nothing is garbage, and looking for it takes a fifth of the time.
+# While tests are collected, there is hardly any garbage, and searching for it takes a fifth of the
+# time.
 _USUAL = gc.get_threshold()
 gc.set_threshold(50_000, 20, 20)
 
@@ -36,7 +37,7 @@ hypothesis.settings.load_profile("soak" if SOAK else "test")
 
 
 def pytest_collection_finish() -> None:
-    """Keep the collector of garbage from looking through thousands of tests again and again."""
+    """Keep the garbage collector from scanning thousands of tests repeatedly."""
     gc.set_threshold(*_USUAL)
     gc.collect()
     gc.freeze()
@@ -58,7 +59,7 @@ def run() -> c2d.Run:
 
 @pytest.fixture
 def say(capsys: pytest.CaptureFixture[str]) -> Callable[[str], None]:
-    """Print a measured figure although the test passes."""
+    """Print a measured value even if the test passes."""
 
     def print_now(text: str) -> None:
         with capsys.disabled():
@@ -69,13 +70,13 @@ def say(capsys: pytest.CaptureFixture[str]) -> Callable[[str], None]:
 
 @pytest.fixture(autouse=True)
 def _no_thread_limit(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Keep a limit of the developer's own out of the tests."""
+    """Keep the developer's own limit out of the tests."""
     monkeypatch.delenv("CRAWLER2D_THREADS", raising=False)
 
 
 @pytest.fixture(scope="session")
 def children() -> Iterator[StandingChildren]:
-    """Children of the reader that stand ready."""
+    """Standing child processes of the reader."""
     from tests.fuzz.standing_child import StandingChildren  # noqa: PLC0415 - not on Windows
 
     children = StandingChildren()
@@ -85,7 +86,7 @@ def children() -> Iterator[StandingChildren]:
 
 @pytest.fixture
 def children_of_its_own() -> None:
-    """The reader starts a process for each file, as ever: for tests of these processes."""
+    """The reader starts a process for each file, as usual, for tests of these processes."""
 
 
 @pytest.fixture(autouse=True)

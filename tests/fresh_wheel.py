@@ -1,4 +1,4 @@
-"""Typical use of the wheel alone; `make test-wheel` runs it without a compiler."""
+"""Typical use of the wheel by itself; `make test-wheel` runs it without a compiler."""
 
 import os
 import shutil
@@ -28,7 +28,7 @@ def main() -> None:
     command = [*program, "audit", str(MODEL), "--quick"]
     done = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=False)
     print(done.stdout)
-    assert done.returncode in (0, 1)  # whether it seizes in so few runs is not the question here
+    assert done.returncode in (0, 1)  # whether it seizes in so few runs does not matter here
     assert "38.7 kg" in done.stdout
     assert "Verdicts" in done.stdout
     page = Path("out/audit-absolem.html").read_text(encoding="utf-8")

@@ -1,8 +1,8 @@
-"""Texts that tests keep as a whole: what is said, and accounts of what is read or made.
+"""Stored texts of tests: messages, and descriptions of what is read or made.
 
-What differs from the kept text is a fault, or is meant. With CRAWLER2D_KEEP=1 in the environment
-the tests write it anew, if one process runs them: look at the difference before it is committed.
-Sentences in `said.txt` are only added; what is said no more goes if that file is emptied before.
+A difference from the stored text is either a fault or intended. With CRAWLER2D_KEEP=1 in the
+environment, tests that run in one process write it anew; check the difference before committing.
+Sentences are only added to `said.txt`; empty that file first to remove those no longer used.
 """
 
 from __future__ import annotations
@@ -20,10 +20,10 @@ import crawler2d as c2d
 
 IS_KEPT_ANEW = os.environ.get("CRAWLER2D_KEEP") == "1"
 ROOT = str(Path(__file__).parents[1])
-# Where pytest's folders and objects are, and what libraries say, which differs by version.
+# Paths of pytest's folders, addresses, and messages of libraries, which differ by version.
 ELSEWHERE = re.compile(r"(file://)?/\S*/pytest-of-[^/]+/pytest-\d+/(popen-gw\d+/)?[^/ ]+")
 PATH = re.compile(r"\bgot (FOLDER|ELSEWHERE|ROOT)[^;:,]*")
-"""As a value, of which the end is left out if its folder has a long name."""
+"""A path as a value, whose end is left out if its folder has a long name."""
 ADDRESS = re.compile(r"x[0-9a-f]{8,}>")
 OTHERS = re.compile(r"(that (trimesh reads|MuJoCo compiles|expands)\b).*")
 
@@ -42,7 +42,7 @@ def kept_in(file: Path) -> set[str]:
 
 
 def check_said(file: Path, sentences: Iterable[str], folder: Path | None = None) -> None:
-    """Compare sentences with those that a file keeps; a folder is told as FOLDER."""
+    """Compare sentences with those in a file, with a folder written as FOLDER."""
     kept = kept_in(file)
     said = {plain(each, folder) for each in sentences}
     if IS_KEPT_ANEW and not said <= kept:
@@ -52,7 +52,7 @@ def check_said(file: Path, sentences: Iterable[str], folder: Path | None = None)
 
 
 def plain(sentence: str, folder: Path | None) -> str:
-    """Write a sentence on one line of ASCII, without what differs from run to run."""
+    """Write a sentence on one line of ASCII, without parts that differ between runs."""
     told = sentence if folder is None else sentence.replace(str(folder), "FOLDER")
     told = PATH.sub("got a path", ELSEWHERE.sub("ELSEWHERE", told).replace(ROOT, "ROOT"))
     told = OTHERS.sub(r"\1", " ".join(ADDRESS.sub("x...>", told).split()))
@@ -63,7 +63,7 @@ def plain(sentence: str, folder: Path | None) -> str:
 def refusing(
     file: Path, match: str | None = None
 ) -> Iterator[pytest.ExceptionInfo[c2d.ScenarioError]]:
-    """Expect a refusal whose sentence is kept in a file."""
+    """Expect a refusal whose sentence is in a file."""
     with pytest.raises(c2d.ScenarioError, match=match) as caught:
         yield caught
     check_said(file, [str(caught.value)])

@@ -1,4 +1,4 @@
-"""Whether a change of the code leaves the motion of every run as it was, to the last bit.
+"""Whether a change of the code leaves the motion of every run unchanged, to the last bit.
 
 `python -m tests.same_runs FILE` writes hashes of some 420 runs into a new file, or compares the
 runs with those of a file that is there. Write the file with the code before, compare with the code
@@ -31,7 +31,7 @@ def scenarios() -> Iterator[tuple[str, Scenario]]:
 
 
 def digest(scenario: Scenario) -> dict[str, str]:
-    """Hash a scenario as JSON, and the bits of all numbers that come of it."""
+    """Hash a scenario as JSON, and the bits of all its results."""
     said = hashlib.sha256(scenario.to_json().encode())
     moved = hashlib.sha256()
     try:
@@ -50,7 +50,7 @@ def digest(scenario: Scenario) -> dict[str, str]:
 
 
 def main(path: Path) -> int:
-    """Write the file, or compare with it and say which runs differ."""
+    """Write the file, or compare with it and print which runs differ."""
     warnings.simplefilter("ignore", c2d.ScenarioWarning)
     found = {name: digest(scenario) for name, scenario in scenarios()}
     if not path.exists():

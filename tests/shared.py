@@ -1,4 +1,4 @@
-"""What tests of several folders share: scenarios that cover every variant, and how long to test."""
+"""Common parts of tests: scenarios that cover every variant, and the length of tests."""
 
 import dataclasses
 import os
@@ -39,7 +39,7 @@ GEAR = c2d.GearWheel(
 
 
 def refused(call: Any) -> c2d.ScenarioError:
-    """What a call is refused with; its rule says what must be."""
+    """The error of a refused call, whose rule begins with "must"."""
     with pytest.raises(c2d.ScenarioError) as caught:
         call()
     assert caught.value.rule.startswith("must")
@@ -47,7 +47,7 @@ def refused(call: Any) -> c2d.ScenarioError:
 
 
 def with_flippers(track: Track, arms: Track | None = None, ends: Any = "both") -> c2d.Robot:
-    """Give the robot raised flippers, with tracks of their own model if `arms` is one."""
+    """Give the robot raised flippers, with their own track model if `arms` is one."""
     built = c2d.robots.engineer().flippers
     assert built is not None
     flippers = dataclasses.replace(built, ends=ends, track=arms)
@@ -155,7 +155,7 @@ VARIANTS = {
 
 
 def refusal(robot: c2d.Robot | Callable[[], c2d.Robot], **fields: Any) -> c2d.ScenarioError:
-    """Return the error that a robot on flat ground gets, or what makes it."""
+    """Return the error for a robot on flat ground, or for making it."""
     with pytest.raises(c2d.ScenarioError) as caught:
         Scenario(
             robot if isinstance(robot, c2d.Robot) else robot(), c2d.terrains.flat(), **fields

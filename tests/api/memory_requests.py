@@ -1,6 +1,6 @@
-"""Requests that want more than 512 MB, made in a process that has no more; run as a program.
+"""Requests for more than 512 MB in a process limited to that; run as a program.
 
-Prints how each kind ended, as JSON. That it prints at all is asked: nothing ended the process.
+It prints how each kind ended, as JSON; that it prints at all shows that nothing ended the process.
 """
 
 import json

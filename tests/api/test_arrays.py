@@ -1,4 +1,4 @@
-"""Arrays of points: every real array gives the same bits, anything else an error."""
+"""Arrays of points: all real arrays give the same bits, anything else an error."""
 
 from pathlib import Path
 from typing import Any

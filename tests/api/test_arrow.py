@@ -1,4 +1,4 @@
-"""Tables as Arrow: for polars, DuckDB and whatever else reads it."""
+"""Tables as Arrow, for polars, DuckDB and others."""
 
 import sys
 

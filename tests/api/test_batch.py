@@ -22,7 +22,7 @@ def batch() -> list[Scenario]:
 
 
 def bits(run: c2d.Run) -> tuple[Any, ...]:
-    """Everything of a run that must repeat."""
+    """All parts of a run that must be reproducible."""
     columns = [*run._trace.values(), *run.contacts.values(), *run.edges.values()]
     return run.outcome, tuple(run.metrics.items()), *(column.tobytes() for column in columns)
 
@@ -168,7 +168,7 @@ def test_an_exception_of_a_progress_callback_propagates_unchanged(batch: list[Sc
     with pytest.raises(OSError, match="display") as caught:
         c2d.simulate_many(batch, progress=fail)
     assert caught.value is error
-    assert c2d.simulate(batch[0]).outcome is not None  # the simulator is none the worse
+    assert c2d.simulate(batch[0]).outcome is not None  # the simulator still works
 
 
 def test_a_progress_callback_may_simulate(batch: list[Scenario]) -> None:

@@ -58,7 +58,7 @@ def test_a_branch_counts_from_the_end_of_the_step_at_its_instant(seized: c2d.Run
     assert seized.parent is None
 
 
-@pytest.mark.parametrize("at", [0.3, 0.6, 2.0])  # by whole steps a rounding off a sample
+@pytest.mark.parametrize("at", [0.3, 0.6, 2.0])  # whole steps miss a sample by rounding
 def test_a_branch_that_begins_with_a_sample_has_it_once(at: float) -> None:
     run = c2d.simulate(SEIZING.replace({"solver.time_step": 1e-3}))
     branch = run.branch(at=at, duration=0.5, sample_interval=0.1)
@@ -79,14 +79,14 @@ def test_a_seized_robot_stays_seized_and_gets_away_on_a_belt(seized: c2d.Run) ->
     freed = seized.branch(track=c2d.BeltTrack(), duration=4.0)
     assert freed.outcome is c2d.Outcome.CLEARED
     assert freed.scenario.robot.track == c2d.BeltTrack()
-    # Ground inside the belt is let out without a push: it leaves no faster than its track runs.
+    # Ground inside the belt is let out without a push: the robot is no faster than its track.
     assert np.hypot(*freed.velocity.T).max() < 1.2
     assert np.array_equal(freed.position[0], seized.position[-1])
 
 
 @pytest.mark.parametrize(("every", "more"), [(4, 1), pytest.param(2, 3, marks=pytest.mark.soak)])
 def test_a_belt_with_grousers_has_the_grip_that_a_smooth_one_lacks(every: int, more: int) -> None:
-    """Gears slip before a step, as does a smooth belt; grousers take hold in half of 48 starts."""
+    """Gears and a smooth belt slip at a step; grousers grip in half of 48 starts."""
     gears = c2d.LineOfWheels(4, wheel=c2d.GearWheel())
     robot = ROBOT.with_track(gears)
     terrain = c2d.terrains.step(0.105, friction=0.7)
@@ -122,7 +122,7 @@ def test_friction_and_command_can_be_changed(seized: c2d.Run) -> None:
 
 
 def test_more_torque_changes_nothing_else() -> None:
-    """The state goes on bit by bit: with the same torque given anew, so does the run."""
+    """The state continues bit by bit, and so does the run if the same torque is given again."""
     run = c2d.simulate(CLEARING.replace({"robot.drivetrain.max_torque": 1.0}))
     assert run.outcome is c2d.Outcome.STALLED
     same = run.branch(max_torque=1.0, duration=1.0)
@@ -136,7 +136,7 @@ def test_more_torque_changes_nothing_else() -> None:
 
 
 def test_the_belly_can_be_removed() -> None:
-    """A blade between the tracks stops the belly alone."""
+    """A blade between the tracks stops only the belly."""
     flat, blade = c2d.terrains.flat(), c2d.terrains.knife_edge(0.06)
     lanes = c2d.terrains.lanes(flat, flat, middle=blade)
     run = c2d.simulate(c2d.Scenario(ROBOT, lanes, goal=1.0))
@@ -190,7 +190,7 @@ def test_its_own_track_can_be_closed(seized: c2d.Run) -> None:
 
 
 def test_an_unchanged_command_goes_on_where_it_is() -> None:
-    """A schedule that has changed the speed before does not begin again."""
+    """A schedule that has already changed the speed does not start again."""
     drive = c2d.Drive(speed=0.1, schedule=((0.5, 0.3),))
     run = c2d.simulate(c2d.Scenario(ROBOT, c2d.terrains.flat(), drive=drive, duration=4.0))
     branch = run.branch(at=3.0, duration=0.5)

@@ -1,4 +1,4 @@
-"""Certificates; and whether what excludes their cells does so, point by point, by other code."""
+"""Certificates, and an independent check, point by point, of the reasons that exclude cells."""
 
 import dataclasses
 import json
@@ -165,7 +165,7 @@ def test_the_reason_that_excludes_a_cell_holds_at_each_of_its_points(whole: Cert
 
 
 class View:
-    """Robots before steps: x, y and angle, and height and friction of their own steps."""
+    """Robots at steps: x, y and angle, with height and friction of each robot's own step."""
 
     def __init__(self, points: NDArray[np.float64]) -> None:
         self.points = points
@@ -184,7 +184,7 @@ class View:
     def _gaps(
         self, axles: NDArray[np.float64], height: NDArray[np.float64]
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Distances of wheels from a step at x = 0, below 0 inside, and directions."""
+        """Distances of wheels from a step at x = 0, negative inside, and directions."""
         x, y = axles[..., 0], axles[..., 1]
         onto = [
             np.stack([np.minimum(x, 0.0), np.zeros_like(x)], axis=-1),
@@ -202,7 +202,7 @@ class View:
 
     @property
     def corner_depth(self) -> NDArray[np.float64]:
-        """[m] How deep the corner is inside the belt round wheels in a row, all of one size."""
+        """[m] Depth of the corner inside the belt round equal wheels in a row."""
         x, y, angle, height = self.points[:, :4].T
         along = -np.cos(angle) * x + np.sin(angle) * (height - y)
         up = np.sin(angle) * x + np.cos(angle) * (height - y)
@@ -212,10 +212,10 @@ class View:
     def resisted(
         self, motion: NDArray[np.float64], low: NDArray[np.float64], high: NDArray[np.float64]
     ) -> int:
-        """Set each wheel on the surface within the cell, and ask whether its force has power."""
+        """Set each wheel on the surface within the cell, and return whether its force has power."""
         vx, vy, rate = motion
         assert vy < 0.0  # the weight works
-        # For each wheel poses of its own.
+        # Each wheel has its own poses.
         touching = np.repeat(self.points[:, None], len(self.radius), axis=1)
         # Along the vertical, by Newton's steps.
         for _ in range(8):

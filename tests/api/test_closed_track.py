@@ -34,7 +34,7 @@ def test_wheels_of_half_the_radius_stand_as_much_lower_when_closed() -> None:
 
 @pytest.mark.parametrize("track", [c2d.LineOfWheels(4, wheel=GEAR), c2d.SegmentalTrack()])
 def test_it_has_the_grousers_of_the_model_unless_it_is_to_be_smooth(track: OpenTrack) -> None:
-    """With grousers it takes hold of a step that its friction does not get it over."""
+    """With grousers it grips a step that it cannot climb by friction."""
     slippery = c2d.terrains.step(0.06, friction=0.35)
     cleared = {}
     for surface in ("own", "smooth"):
@@ -51,7 +51,7 @@ def test_it_has_the_grousers_of_the_model_unless_it_is_to_be_smooth(track: OpenT
 
 
 def test_it_closes_the_arms_too() -> None:
-    """A chain or wheels on the chassis alone would leave pockets on the arms."""
+    """A chain or wheels only on the chassis would leave pockets on the arms."""
     robot = with_flippers(c2d.ClosedTrack(c2d.LineOfWheels(5)))
     blade = [(-3.0, 0.0), (0.0, 0.0), (0.0, 0.03), (0.01, 0.03), (0.01, 0.0), (3.0, 0.0)]
     ground = c2d.terrains.from_points(blade, goal=2.0)
@@ -66,7 +66,7 @@ def test_it_closes_the_arms_too() -> None:
 
 
 def test_mass_and_force_are_those_of_the_model() -> None:
-    """Servos of all wheels together push as hard as the one motor of the belt does."""
+    """Servos of all wheels together push as hard as the belt's single motor."""
     wall = c2d.Scenario(ROBOT, c2d.terrains.step(0.5), duration=4.0)
     weak = wall.replace({"robot.drivetrain.max_torque": 0.5})
     servos = weak.replace(

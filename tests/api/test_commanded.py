@@ -1,4 +1,4 @@
-"""Simulations that are commanded by hand or by a function, and what becomes of them as runs."""
+"""Simulations that are commanded by hand or by a function, and their runs."""
 
 import _thread
 import copy
@@ -263,7 +263,7 @@ def test_the_flippers_of_each_end_are_held_at_their_own_angle() -> None:
     gait = c2d.Hold(0.2, ((1.0, 0.6),), rear=-0.4)
     run = c2d.simulate(TWO_ENDS, c2d.terrains.flat(), drive=c2d.Drive(gait=gait), duration=2.0)
     before = np.searchsorted(run.time, 0.99)
-    # Where they hold, the motors give way by less than this under the arms' weight.
+    # While they hold, the motors yield by less than this under the weight of the arms.
     assert run.flipper_angles[before] == pytest.approx([0.2, -0.4], abs=1e-3)
     assert run.flipper_angles[-1] == pytest.approx([0.6, -0.4], abs=1e-3)
 

@@ -1,4 +1,4 @@
-"""Whatever one run does, or one number is, the others come back and the interpreter goes on."""
+"""Whatever happens in one run, the others return results and the interpreter continues."""
 
 import platform
 import subprocess
@@ -33,12 +33,12 @@ def test_a_slow_command_is_never_called_a_stop_before_its_window_is_over() -> No
 def test_a_history_that_outgrows_memory_takes_no_other_run_with_it(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    # More contacts than are counted on: all of the wheels bear all the time.
+    # More contacts than expected: all wheels bear all the time.
     wheels = ENGINEER.with_track(c2d.LineOfWheels(200))
     base = c2d.Scenario(wheels, c2d.terrains.flat(), drive=c2d.Drive(speed=0.0))
     long = base.replace({"duration": 100.0, "criteria.stop_window": 1000.0})
     short = base.replace({"duration": 0.1})
-    # What the batch is counted to need is just there; what the first records is twice of that.
+    # The estimated memory of the batch is just available; the first run's record takes twice that.
     monkeypatch.setenv("CRAWLER2D_MEMORY", "0.145")
     runs = c2d.simulate_many([long, short, short], threads=1, on_error="record")
     assert isinstance(runs[0].error, errors.LimitError)

@@ -1,4 +1,4 @@
-"""The same scenario in both engines: how they end, when they part, what statics says."""
+"""The same scenario in both engines: ends, time of separation, and statics."""
 
 import math
 import pickle
@@ -73,7 +73,7 @@ def test_each_stop_is_an_equilibrium_up_to_some_friction(
 def test_forces_of_the_stops_bear_the_robot(check: CrossCheck[c2d.Run]) -> None:
     weight = SEIZING.robot.mass * SEIZING.gravity
     for prefix in ("", "other_"):
-        # A stop at rest: what is left is the rounding of means over a window.
+        # A stop at rest: the rest is rounding of means over a window.
         assert check.forces[f"{prefix}force_y"].sum() == pytest.approx(weight, rel=1e-3)
         assert abs(check.forces[f"{prefix}force_x"].sum()) < 1e-3 * weight
     ours, theirs = check.forces["force_y"], check.forces["other_force_y"]
@@ -92,7 +92,7 @@ def test_paths_part_at_the_first_sample_that_is_more_than_a_millimetre_apart(
 def test_on_level_ground_paths_do_not_part() -> None:
     check = c2d.simulate(STEADY).cross_check()
     assert check.parted_at is None
-    assert check.distance < 1e-4  # what wheels slip at the start in softer contacts
+    assert check.distance < 1e-4  # slip of wheels at the start in softer contacts
     assert check.balances == (None, None)
     assert len(check.forces) == 0
     assert "stay within 1 mm" in str(check)
@@ -256,7 +256,7 @@ def test_a_check_ends_with_the_counts_of_both_engines(check: CrossCheck[c2d.Run]
 def test_a_check_says_before_it_starts_how_long_it_will_take(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    """24 round wheels that took 0.02 s here took rapier 23 s, without a word."""
+    """24 round wheels took 0.02 s here and 23 s in rapier, without a message."""
     run = c2d.simulate(STEADY.replace({"robot.track": ROUND, "duration": 30.0}), goal=0.0)
     told: list[tuple[float, float]] = []
 

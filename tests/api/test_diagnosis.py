@@ -1,4 +1,4 @@
-"""Why a run stopped: what a diagnosis holds."""
+"""Contents of the diagnosis of a stop."""
 
 import copy
 import dataclasses
@@ -25,7 +25,7 @@ PUBLIC_WHEELS = c2d.HybridWheels(((-0.186, 0.0, 0.08), (0.0, 0.0, 0.08), (0.186,
 LOW_BELLY = dataclasses.replace(
     ROBOT, belly=((-0.15, -0.075), (0.15, -0.075), (0.15, 0.05), (-0.15, 0.05))
 )
-# Free wheels on a slope that their drive is just too weak for.
+# Free wheels on a slope that is just too steep for their drive.
 ROLLING = dataclasses.replace(
     c2d.robots.engineer(
         flippers=None, track=c2d.ForceTrack(support="wheels"), center_of_mass=(0.0347, 0.02)
@@ -34,7 +34,7 @@ ROLLING = dataclasses.replace(
 )
 STOPS: dict[str, tuple[c2d.Robot, Any]] = {
     "straddled": (ROBOT.with_track(c2d.LineOfWheels(4)), c2d.terrains.step(0.10)),
-    # The belly hangs 50 mm above the ground: at that very height rounding says what bears.
+    # The belly is 50 mm above the ground: at exactly that height, rounding decides what bears.
     "undercut": (ROBOT.with_track(PUBLIC_WHEELS), c2d.terrains.barrier(0.0495, 0.02)),
     "on its belly": (ROBOT.with_track(c2d.LineOfWheels(2)), c2d.terrains.barrier(0.065, 0.05)),
     "interlocked": (
@@ -241,13 +241,13 @@ def test_a_simulation_under_way_says_why_it_has_stopped(stops: dict[str, c2d.Run
     assert found is not None
     needed = {name: value for name, value in found.to_dict().items() if name != "trials"}
     np.testing.assert_equal(needed, {name: why(run).to_dict()[name] for name in needed})
-    # Of one under way only what its outcome needs is tried.
+    # During a run only the trials that its outcome needs are made.
     assert set(found.freed_by) <= set(why(run).freed_by)
 
 
 NEEDED = [
     *("unchanged", "rebuilt", "closed track", "closed track, clear of the ground"),
-    # The belt tips over at this step, so that another is tried.
+    # The belt tips over at this step, so another trial is made.
     *("belt, from the start", "closed track, from the start"),
 ]
 

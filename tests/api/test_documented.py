@@ -21,7 +21,7 @@ CONVENTIONS = (ROOT / "docs/conventions.md").read_text(encoding="utf-8")
 
 
 def kinds_of(module: Any) -> list[type[Parameters]]:
-    """Return the classes of a module that are one kind of something."""
+    """Return the classes of a module that are variants of a kind."""
     classes = [cls for cls in vars(module).values() if inspect.isclass(cls)]
     return [cls for cls in classes if issubclass(cls, Parameters) and cls.kind]
 
@@ -31,7 +31,7 @@ MODELS = [cls for cls in kinds_of(track) if cls.default_path == "robot.track"]
 
 
 def kinds_in(node: Any) -> Iterator[str]:
-    """Yield what every object in plain data says that it is."""
+    """Yield the kind of every object in plain data."""
     if isinstance(node, dict):
         if "kind" in node:
             yield node["kind"]
@@ -43,14 +43,14 @@ def kinds_in(node: Any) -> Iterator[str]:
 
 
 def kinds_below(cls: type[Parameters]) -> Iterator[type[Parameters]]:
-    """Yield the classes that a class is the base of."""
+    """Yield the subclasses of a class."""
     for each in cls.__subclasses__():
         yield each
         yield from kinds_below(each)
 
 
 def section(name: str) -> str:
-    """Return a section of the conventions, the next heading of its level excluded."""
+    """Return a section of the conventions, up to the next heading of its level."""
     return CONVENTIONS.partition(f"\n## {name}\n")[2].partition("\n## ")[0]
 
 

@@ -1,4 +1,4 @@
-"""Rotors, torque curves and controllers as a user gives them."""
+"""Rotors, torque curves and controllers, as specified by users."""
 
 from dataclasses import replace
 from typing import Any
@@ -196,7 +196,7 @@ def test_a_stop_that_only_a_lock_bears_is_an_equilibrium_to_both_judges(
     assert run.outcome == c2d.Outcome.STALLED
     assert run.diagnosis is not None
     assert run.diagnosis.imbalance is not None
-    # Within its torque alone a motor would leave a tenth of the weight or more.
+    # With only its own torque, a motor would leave a tenth of the weight or more.
     assert run.diagnosis.imbalance < 1e-6
     assert Judge(run).opinion().imbalance < 1e-6
     assert Judge(run).opinion().symptom == "stalled"

@@ -1,4 +1,4 @@
-"""Errors: one tree, and nothing is lost on the way to another process."""
+"""Errors have one base class, and lose nothing on the way to another process."""
 
 import pickle
 

@@ -13,7 +13,7 @@ import pytest
 from crawler2d.common.extras import extra
 from crawler2d.runs.progress import reporter
 
-# Its second half cannot be loaded twice, as that of many a compiled package.
+# Its second half cannot be loaded twice, like that of many compiled packages.
 HALF = """
 import sys
 import halved.core

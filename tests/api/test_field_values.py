@@ -138,7 +138,7 @@ OMITTED = c2d.Drivetrain.omitted_defaults + c2d.SegmentalTrack.omitted_defaults
 def test_a_missing_key_is_refused_in_every_object() -> None:
     for name, keys in OBJECTS:
         for key in at(PLAIN[name], keys):
-            if key in OMITTED:  # texts leave it out at its default
+            if key in OMITTED:  # JSON leaves it out at its default
                 continue
             plain = copy.deepcopy(PLAIN[name])
             del at(plain, keys)[key]
@@ -266,7 +266,7 @@ def test_the_error_for_a_version_1_file_says_what_has_changed() -> None:
     error = refusal(old)
     assert error.path == "schema"
     assert "solver.accuracy takes the place of solver.substeps" in error.rule
-    # What it says leads to a file of today.
+    # Following its advice gives a current file.
     del old["solver"]["substeps"]
     old["schema"] = 2
     old["solver"]["accuracy"] = None

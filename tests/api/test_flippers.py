@@ -1,4 +1,4 @@
-"""Flippers and gaits as a user commands them."""
+"""Flippers and gaits, as commanded by users."""
 
 from dataclasses import replace
 from typing import Any
@@ -62,7 +62,7 @@ def test_commands_override_the_gait_of_the_flippers() -> None:
     assert sim.state().flipper_angles == pytest.approx([0.8, 1.2])
     with pytest.raises(c2d.ScenarioError, match="flipper_angle"):
         sim.command(flipper_angle=np.nan, speed=0.1, rear_flipper_angle=0.1)
-    sim.advance(1.0)  # nothing of a refused command is kept
+    sim.advance(1.0)  # a refused command has no effect
     assert sim.state().flipper_angles == pytest.approx([0.8, 1.2])
     front = c2d.Simulation(Scenario(ENGINEER, c2d.terrains.flat()))
     with pytest.raises(c2d.ScenarioError, match="no flippers there"):
@@ -126,7 +126,7 @@ def test_same_bits_in_a_batch_and_from_a_snapshot() -> None:
 
 
 def test_shoes_and_arms_that_leave_the_chassis_no_inertia_are_refused() -> None:
-    """Together they may have more than the robot; a step of it never ended."""
+    """Together they may have more than the robot, for which a step never ended."""
     robot = c2d.robots.engineer(flippers=None, track=c2d.SegmentalTrack(shoe_count=44))
     arms = replace(ARMS, ends="both")
     with pytest.raises(c2d.ScenarioError, match=r"robot\.moment_of_inertia must exceed"):
@@ -231,7 +231,7 @@ def test_arms_that_turn_too_far_in_a_step_are_refused_not_slowed() -> None:
     error = refusal(fast, solver=c2d.Solver(time_step=8e-3))
     assert error.path == "solver.time_step"
     assert "no wheel or flipper turns by more than 0.7 rad (here 0.800 rad)" in error.rule
-    # Steps of an accuracy are as short as it takes.
+    # With an accuracy, steps are as short as needed.
     c2d.Scenario(fast, c2d.terrains.flat()).validate()
 
 

@@ -1,4 +1,4 @@
-"""`height_at`: the height of any terrain at places along x."""
+"""`height_at`: the height of any terrain at positions along x."""
 
 import math
 from typing import Any

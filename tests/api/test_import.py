@@ -1,4 +1,4 @@
-"""The package as it is imported: cost, build, public names."""
+"""Import of the package: time, build, public names."""
 
 import os
 import subprocess
@@ -101,7 +101,7 @@ def test_a_function_takes_precedence_over_the_module_of_its_name() -> None:
 
 def test_every_public_name_exists_and_is_documented() -> None:
     values = [getattr(c2d, name) for name in c2d.__all__]
-    # A screen. Kinds of tracks, wheels and gaits are not counted: models are to become more.
+    # One screen, without kinds of tracks, wheels and gaits, as there will be more models.
     assert len([value for value in values if not getattr(value, "kind", "")]) < 58
     for name in c2d.__all__:
         assert getattr(c2d, name).__doc__, name

@@ -14,7 +14,7 @@ import crawler2d as c2d
 
 Say = Callable[[str], None]
 
-# Steps of a given length: on flat ground, those of an accuracy are soon at the end of any run.
+# Fixed steps: on flat ground, steps with an accuracy soon reach the end of any run.
 
 BATCH = """
 import sys, time
@@ -90,7 +90,7 @@ except KeyboardInterrupt:
     print(now, (many.state.time == 0.05).all(), flush=True)
 """
 
-# A run whose end is only claimed: it would take long to repeat it up to there.
+# A run whose end is made up: repeating it up to there would take long.
 BRANCH = """
 import time
 import crawler2d as c2d

@@ -52,7 +52,7 @@ def throw():
 
 DELAYS = (0.02, 0.1, 0.3) if SOAK else (0.02, 0.1)  # [s]
 
-# Each is called again and again until it is interrupted, at some instants.
+# Each is called repeatedly until it is interrupted, at several instants.
 CALLS = {
     "simulate": "c2d.simulate(dense, record='summary')",
     "batch": "c2d.simulate_many([dense, chain] * 4, threads=2, record='summary')",

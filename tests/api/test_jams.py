@@ -29,7 +29,7 @@ def test_the_stop_of_a_run_is_a_jam_with_the_loads_of_its_diagnosis() -> None:
     assert jam.chassis_angle == pytest.approx(run.chassis_angle[-1], abs=1e-5)
     assert jam.between == (1, 2)
     loads = {contact.body: contact.normal_force for contact in jam.contacts}
-    assert (round(loads[1]), round(loads[2])) == (112, 40)  # as its sentence has them
+    assert (round(loads[1]), round(loads[2])) == (112, 40)  # as in its sentence
     assert "112 N" in str(run.diagnosis)
     assert "40 N" in str(run.diagnosis)
     assert jam.depth == pytest.approx(0.021, abs=5e-4)

@@ -1,4 +1,4 @@
-"""Keywords that do not exist or are left out: refused at once, with those that do exist."""
+"""Unknown or missing keywords are refused at once, with the valid ones."""
 
 import inspect
 import pickle
@@ -17,7 +17,7 @@ BASE = c2d.Scenario(ROBOT, c2d.terrains.step(0.05))
 
 
 def public(owner: Any = c2d) -> Iterator[tuple[str, Callable[..., Any]]]:
-    """Yield the public classes, functions and methods with the names under which they are found."""
+    """Yield the public classes, functions and methods with their public names."""
     names = getattr(owner, "__all__", None) or [each for each in dir(owner) if each[0] != "_"]
     for name in names:
         found = getattr(owner, name)
@@ -32,7 +32,7 @@ def public(owner: Any = c2d) -> Iterator[tuple[str, Callable[..., Any]]]:
 
 
 def keywords(function: Callable[..., Any]) -> list[str]:
-    """Keywords that a function names itself."""
+    """Return the keywords that a function names explicitly."""
     parameters = inspect.signature(function).parameters.values()
     named = (inspect.Parameter.KEYWORD_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD)
     optional = [p.name for p in parameters if p.kind in named and p.name != "self"]
@@ -40,16 +40,16 @@ def keywords(function: Callable[..., Any]) -> list[str]:
 
 
 OTHERS = {
-    # They hand on what they do not know.
+    # They pass on unknown keywords.
     *("simulate", "terrains.from_points", "terrains.knife_edge", "terrains.stepfield_with_barrier"),
     *("terrains.from_csv", "explore", "jams"),
-    "studies.real_time_factor",  # which says itself why it does not take what other studies take
-    *("Run", "Diagnosis", "Reading", "Audit"),  # results, which nobody makes
+    "studies.real_time_factor",  # which explains why it does not accept keywords of other studies
+    *("Run", "Diagnosis", "Reading", "Audit"),  # results, which users do not construct
 }
 CALLED = [
     (name, function)
     for name, function in public()
-    # What distributions do with numbers is not for users.
+    # Methods of distributions on numbers are not for users.
     if keywords(function) and name not in OTHERS and not name.endswith((".resolve", ".values"))
 ]
 

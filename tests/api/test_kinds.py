@@ -1,4 +1,4 @@
-"""What has a name in both languages has the same one, and the same code."""
+"""Names that exist in both languages are the same, with the same codes."""
 
 from pathlib import Path
 from typing import Any

@@ -25,13 +25,13 @@ pytestmark = [
 
 START = c2d.variability.of_start()
 
-# Small enough steps that it takes for ever.
+# Steps so small that it takes for ever.
 ENDLESS = BASE.replace({"solver.time_step": 1e-5})
 
 
 @contextlib.contextmanager
 def busy(call: Callable[[], None]) -> Iterator[None]:
-    """A thread that calls again and again."""
+    """A thread that calls a function repeatedly."""
     end = threading.Event()
 
     def work() -> None:
@@ -48,7 +48,7 @@ def busy(call: Callable[[], None]) -> Iterator[None]:
 
 
 def forked(call: Callable[[], object]) -> str:
-    """What a call comes to in a fork of this process, or its error."""
+    """The result of a call in a fork of this process, or its error."""
     read, write = os.pipe()
     child = os.fork()
     if child == 0:
@@ -106,7 +106,7 @@ def test_a_fork_does_not_wait_for_a_thread_of_its_parent() -> None:
         for _ in range(3):
             for call in (lambda: sim.advance(0.1), sim.state, many.state, many.reset):
                 told = forked(call)
-                # Between two pieces it is whole, and can be used.
+                # Between two pieces it is consistent, and can be used.
                 assert "when this process was forked" in told or "Error" not in told
                 assert told != "hangs"
         fresh = forked(lambda: c2d.simulate(BRIEF, record="summary").metrics["final_x"])
@@ -130,7 +130,7 @@ def test_a_fork_reads_the_store_that_its_parent_writes_and_writes_it_after_that(
 
 
 def test_a_fork_that_outlives_the_store_of_its_parent_can_open_it(tmp_path: Path) -> None:
-    """It has inherited what its parent had noted as locked, and not the lock."""
+    """It has inherited its parent's record of the lock, but not the lock."""
     path = tmp_path / "a.sqlite"
     go, went = os.pipe()
 

@@ -1,4 +1,4 @@
-"""Requests beyond what memory holds are refused; none ends the interpreter."""
+"""Requests beyond the available memory are refused; none ends the interpreter."""
 
 import json
 import os
@@ -19,7 +19,7 @@ def told(count: int, seed: int) -> dict[str, int]:
         capture_output=True,
         text=True,
         check=False,
-        # OpenBLAS takes room for each of its threads, and interrupts the process if there is none.
+        # OpenBLAS reserves memory for each of its threads, and interrupts the process without it.
         env={**os.environ, "OPENBLAS_NUM_THREADS": "1"},
     )
     assert done.returncode == 0, done.stderr[-2000:]

@@ -78,7 +78,7 @@ def test_all_other_discs_are_kept_as_they_are_given(discs: Any) -> None:
     assert pickle.loads(pickle.dumps(outline)) == copy.deepcopy(outline) == outline
 
 
-# What the ends are.
+# The ends.
 
 
 @pytest.mark.parametrize(
@@ -88,7 +88,7 @@ def test_all_other_discs_are_kept_as_they_are_given(discs: Any) -> None:
         (DISCS[::-1], (0.57, 0.045, 0.05)),
         # The rear end reaches farther back than the disc whose axle lies farthest back.
         (((-0.2, 0, 0.08), (-0.21, 0.2, 0.03), (0.2, 0, 0.05)), (0.4, 0.05, 0.08)),
-        # Of two that reach equally far the higher one is an end.
+        # If two reach equally far, the higher one is an end.
         (((-0.2, 0, 0.05), (-0.21, 0.2, 0.04), (0.2, 0, 0.05)), (0.41, 0.05, 0.04)),
         (((-0.21, 0.2, 0.04), (-0.2, 0, 0.05), (0.2, 0, 0.05)), (0.41, 0.05, 0.04)),
     ],
@@ -303,7 +303,7 @@ def test_a_run_on_discs_can_be_tried_continued_and_shown(track: Any, tmp_path: A
         TRAPEZOID.with_track(track),
         c2d.terrains.step(0.3, friction=0.4),
         start=c2d.Start(approach=0.02),
-        solver=c2d.Solver(accuracy=1e-4),  # where it stops does not matter here
+        solver=c2d.Solver(accuracy=1e-4),  # the position of its stop does not matter here
     )
     run = c2d.simulate(scenario.replace({"duration": 2.5}))
     assert run.diagnosis is not None

@@ -1,4 +1,4 @@
-"""Presets and generators: their figures, and the rules of Robot.simple."""
+"""Presets and generators: their values, and the rules of Robot.simple."""
 
 import dataclasses
 import math
@@ -45,7 +45,7 @@ def test_the_gazebo_vehicle_is_put_together_from_its_file() -> None:
 
 
 def test_an_edge_that_a_belt_clears_enters_public_wheel_models() -> None:
-    """What people run into who replace tracks by wheels in a simulator: it has no rotors."""
+    """The problem of users who replace tracks by wheels in a simulator, which has no rotors."""
     blade = c2d.terrains.knife_edge(0.05, thickness=0.02)
     wheels = c2d.robots.engineer(flippers=None, track="public").without_rotors()
     belt = c2d.robots.engineer(flippers=None).without_rotors()
@@ -65,7 +65,7 @@ def test_the_engineers_rotors_carry_its_public_wheels_over_that_edge() -> None:
 def test_public_absolem_seizes_between_the_wheels_of_its_flippers(
     with_rotors: bool, seizing: tuple[int, ...], clear: int
 ) -> None:
-    """At the friction of its wheels, where a belt gets over; higher up the wheels do, too."""
+    """At the friction of its wheels, where a belt clears; with more, the wheels clear, too."""
     drive = c2d.Drive(gait=c2d.Climb())
     robots = [c2d.robots.absolem(track=track) for track in ("public", None)]
     scenarios = [

@@ -1,4 +1,4 @@
-"""Other processes find the same bits, and what cannot work says so."""
+"""Other processes compute the same bits, or raise an error that says why not."""
 
 import multiprocessing
 import subprocess

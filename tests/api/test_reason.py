@@ -23,7 +23,7 @@ def test_a_robot_that_tips_over_says_which_way_and_about_what(tipped: c2d.Run) -
     found = tipped.tip_over()
     assert found.backwards
     assert found.time < found.end == tipped.metrics["time"]
-    # Where its pose and the contacts of the run have it, to what moves in a sample of 10 ms.
+    # As in its pose and the contacts of the run, up to the motion in a sample of 10 ms.
     at = int(np.searchsorted(tipped.time, found.time))
     angle, (x, y) = tipped.chassis_angle[at], tipped.position[at]
     along, up = ROBOT.center_of_mass
@@ -50,7 +50,7 @@ def test_changes_that_prevent_tipping_over_are_tried(tipped: c2d.Run) -> None:
 
 
 def test_a_slower_robot_moves_its_flippers_at_the_same_places() -> None:
-    """Flippers that are lowered beyond the edge come too late at any speed."""
+    """Flippers that are lowered beyond the edge are too late at any speed."""
     late = c2d.Drive(speed=0.4, gait=c2d.Hold(1.5, ((3.0, 0.3),)))
     run = c2d.simulate(c2d.robots.engineer(), c2d.terrains.step(0.1), drive=late, duration=5e4)
     ends = dict(run.tip_over().tried)  # the longest duration is 1e5 s

@@ -39,7 +39,7 @@ def test_setting_the_accuracy_or_the_time_step_clears_the_other() -> None:
     for variant in (steps, fine):
         variant.validate()
         assert Scenario.from_json(variant.to_json()) == variant
-    # What is off already stays so; without both, there is the default accuracy.
+    # A field that is already off stays so; without both, the default accuracy applies.
     assert fine.replace({"solver.time_step": None}) == fine
     assert steps.replace({"solver.time_step": None}) == scenario
     both = {"solver.accuracy": None, "solver.time_step": 1e-3}

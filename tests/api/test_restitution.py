@@ -1,4 +1,4 @@
-"""What contacts give back of an impact."""
+"""Restitution of contacts in impacts."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""The robot as it is built: what its rules refuse."""
+"""Values that the rules of a robot refuse."""
 
 import dataclasses
 import math
@@ -11,7 +11,7 @@ from tests.shared import ROBOT, refusal
 
 
 def star(points: int, rounds: int) -> list[tuple[float, float]]:
-    """Corners on a circle, counter-clockwise, in so many rounds."""
+    """Corners on a circle, counter-clockwise, in a number of rounds."""
     angles = [math.tau * rounds * i / points for i in range(points)]
     return [(0.1 * math.cos(angle), 0.1 * math.sin(angle)) for angle in angles]
 

@@ -1,4 +1,4 @@
-"""Arms go on a robot and off it with their masses, and a field that leaves them there says so."""
+"""Adding and removing arms changes the mass, and a field that keeps them says so."""
 
 import dataclasses
 import math
@@ -57,7 +57,7 @@ def test_arms_take_the_place_of_those_that_were_there() -> None:
 
 
 def test_no_preset_but_the_engineer_weighs_more_bare_than_its_arms_leave() -> None:
-    """The Engineer without arms is the robot of the studies, as heavy as the whole."""
+    """The Engineer without arms is the robot of the studies, with the mass of the whole robot."""
     for name in c2d.robots.__all__:
         make = getattr(c2d.robots, name)
         bare, taken = make(flippers=None), make().without_flippers()

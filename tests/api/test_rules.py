@@ -1,4 +1,4 @@
-"""Rules of calls that few calls break: each is refused by name."""
+"""Rules of calls that are rarely broken: each error names the argument."""
 
 from pathlib import Path
 from typing import Any
@@ -13,7 +13,7 @@ BRIEF = c2d.Scenario(ROBOT, STEP, duration=0.1)
 
 
 class Broken:
-    """What raises when it is asked for its numbers."""
+    """An object that raises when its numbers are read."""
 
     def __array__(self, *_: Any, **__: Any) -> Any:
         raise RuntimeError("no numbers")

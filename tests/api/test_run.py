@@ -1,4 +1,4 @@
-"""A run: its arrays, tables and ways out."""
+"""A run: its arrays, tables and exports."""
 
 import copy
 import json
@@ -80,7 +80,7 @@ def test_samples_fall_on_multiples_of_their_interval_whatever_the_steps(interval
     *times, end = run.time.tolist()
     assert times == [index * interval for index in range(len(times))]
     assert end == run.metrics["time"] == 2.2345
-    # Forces are means weighted by time: those of the ground make up the change of momentum.
+    # Forces are means weighted by time: those of the ground equal the change of momentum.
     gained = ROBOT.mass * np.diff(run.velocity[:, 0])
     assert run.tractive_effort[1:] * np.diff(run.time) == pytest.approx(gained, abs=1e-6)
 
@@ -135,7 +135,7 @@ def test_an_array_cannot_be_written_to(run: c2d.Run, name: str) -> None:
 
 
 def arrays_given_out() -> dict[str, np.ndarray[Any, Any]]:
-    """Every array of a run that ends in a stop, and of a simulation's state."""
+    """All arrays of a run that ends in a stop, and of a simulation's state."""
     robot = c2d.robots.engineer(track=c2d.LineOfWheels(4)).without_rotors()
     run = c2d.simulate(robot, c2d.terrains.step(0.10), start=c2d.Start(approach=0.02))
     sim = c2d.Simulation(run.scenario)
@@ -248,7 +248,7 @@ def test_contacts_carry_the_weight_on_flat_ground() -> None:
 
 def test_a_wheel_is_one_contact_from_facet_to_facet() -> None:
     xs = np.linspace(-3.0, 3.0, 601)
-    # All but flat: facets of one line would be one.
+    # Not quite flat: facets on one line would be merged.
     ground = c2d.terrains.from_points(np.column_stack([xs, 1e-3 * xs**2]), goal=1.0)
     robot = ROBOT.with_track(c2d.LineOfWheels(3))
     contacts = c2d.simulate(robot, ground, start=c2d.Start(approach=0.6), duration=1.5).contacts

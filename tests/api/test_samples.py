@@ -1,4 +1,4 @@
-"""The models that the package ships are one robot in three formats, and it seizes as is meant."""
+"""The sample models are one robot in three formats, which seizes as intended."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -44,7 +44,7 @@ def test_the_samples_are_of_every_format() -> None:
 @pytest.mark.parametrize("name", NAMES[1:])
 def test_each_format_has_the_same_robot(name: str) -> None:
     first, other = read(NAMES[0]), read(name)
-    # MuJoCo's servos correct a speed by a gain where those of other simulators hold it.
+    # MuJoCo's servos correct a speed by a gain, while those of other simulators hold it.
     held = replace(other.robot.drivetrain, controller=None)
     robots = (first.robot, replace(other.robot, drivetrain=held))
     expected, found = (leaves(to_dict(each)) for each in robots)

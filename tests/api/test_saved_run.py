@@ -47,7 +47,7 @@ def _bits(array: Any) -> bytes:
 
 
 def content(run: c2d.Run) -> tuple[Any, ...]:
-    """Everything that a run holds, as pickling takes it."""
+    """All contents of a run, as for pickling."""
     _, (scenario, result, error, parent) = run.__reduce__()
     return scenario.to_json(), result, error, parent
 
@@ -172,7 +172,7 @@ def test_a_run_that_has_not_stopped_when_its_file_says_so_is_not_continued(saved
 
 
 def change(path: Path, edit: Any) -> None:
-    """Change what a file says of itself."""
+    """Change the header of a file."""
     with np.load(path) as entries:
         arrays: dict[str, Any] = {name: entries[name] for name in entries.files}
     about = json.loads(str(arrays["about"]))
@@ -181,7 +181,7 @@ def change(path: Path, edit: Any) -> None:
 
 
 def refusal(path: Path) -> str:
-    """What a file is refused with: one line, with its path."""
+    """The error for a file: one line, with its path."""
     with pytest.raises(c2d.StoreError) as caught:
         c2d.load(path)
     text = str(caught.value)
@@ -237,7 +237,7 @@ def test_nothing_in_a_file_is_executed(saved: Path) -> None:
     np.savez(saved, allow_pickle=True, **arrays | {"trace/position": hostile})
     assert "is damaged" in refusal(saved)
     assert not executed.exists()
-    with np.load(saved, allow_pickle=True) as entries:  # it would have been
+    with np.load(saved, allow_pickle=True) as entries:  # the file that would have been written
         entries["trace/position"]
     assert executed.exists()
 
@@ -268,7 +268,7 @@ def test_a_flipped_byte_is_refused_or_changes_nothing(saved: Path, stopped: c2d.
 
 @pytest.fixture
 def broken(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """A disk that is full after some bytes."""
+    """A disk that is full after a number of bytes."""
 
     def full(file: Any, **_: Any) -> None:
         file.write(b"PK")

@@ -283,7 +283,7 @@ def test_json_of_something_else_is_refused_as_such(text: str, got: str) -> None:
         Scenario.from_json(text)
     assert caught.value.path == "scenario"
     assert str(caught.value.value).startswith(got)
-    with pytest.raises(c2d.ScenarioError, match="schema must be given"):  # another version has it
+    with pytest.raises(c2d.ScenarioError, match="schema must be given"):  # as in another version
         Scenario.from_json('{"robot": {}}')
 
 

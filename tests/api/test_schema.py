@@ -38,7 +38,7 @@ def is_read(scenario: Any) -> bool:
 
 
 def leaves(node: Any, place: Place = ()) -> Iterator[tuple[Place, Any]]:
-    """Yield every value in plain data that holds no others, and where it is."""
+    """Yield every value in plain data that contains no others, with its path."""
     if isinstance(node, (dict, list)):
         pairs = node.items() if isinstance(node, dict) else enumerate(node)
         for key, value in pairs:
@@ -55,7 +55,7 @@ def objects(node: Any, place: Place = ()) -> Iterator[Place]:
 
 
 def changed(plain: Any, place: Place, value: Any) -> Any:
-    """Copy plain data, with another value at a place."""
+    """Copy plain data with another value at a path."""
     copied = copy.deepcopy(plain)
     holder = copied
     for key in place[:-1]:

@@ -1,4 +1,4 @@
-"""A chain of shoes as Python users meet it: shapes, figures, errors, variants."""
+"""A chain of shoes in Python: shapes, values, errors, variants."""
 
 import itertools
 from dataclasses import replace
@@ -42,14 +42,14 @@ def test_shoes_stay_linked_and_the_robot_as_high_as_built(
     gaps = np.linalg.norm(np.roll(middle - along, -1, axis=1) - (middle + along), axis=-1)
     assert gaps.max() < 1e-4
     assert run.metrics["max_pin_gap"] < 1e-4
-    settled = run.time > 3.0  # chassis and guide find their places
+    settled = run.time > 3.0  # chassis and guide settle
     # On a guide, the polygon of 22 shoes lifts the robot by up to 1.1 mm.
     within = 1.2e-3 if (mechanism, count) == ("guide", 22) else 1e-3
     assert run.position[settled, 1] == pytest.approx(0.064, abs=within)
 
 
 def _pitch(run: c2d.Run) -> float:
-    """[m] Distance of the pins: that with which the first chain closes best."""
+    """[m] Distance of the pins, with which the first chain closes best."""
     middle, angle = run.shoe_poses[0, :, :2], run.shoe_poses[0, :, 2]
     along = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
     between = np.roll(middle, -1, axis=0) - middle
@@ -74,7 +74,7 @@ def test_a_tighter_chain_has_more_tension() -> None:
         return float(run.track_tension[-1])
 
     # Both tracks are lumped, and each has two runs: the force of one tensioner is in their pins.
-    # Shoes that stick keep some of the tension of the start, even on smooth ground.
+    # Shoes that stick keep some of the initial tension, even on smooth ground.
     smooth = c2d.terrains.flat(friction=0.05)
     assert tension(100.0) - tension(50.0) == pytest.approx(50.0, rel=0.15)
 
@@ -161,7 +161,7 @@ def test_ends_too_small_for_any_shoe_say_so() -> None:
 
 
 def test_a_shoe_may_weigh_a_three_thousandth_of_the_rest() -> None:
-    """Beyond, pins open by millimetres; up to there they hold as those of heavier shoes do."""
+    """Beyond this, pins open by millimetres; up to it they hold like those of heavier shoes."""
     light = replace(chain(), track_mass=0.16)
     run = c2d.simulate(Scenario(light, c2d.terrains.step(0.06), duration=8.0))
     assert run.outcome == "cleared"

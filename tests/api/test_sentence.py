@@ -62,7 +62,7 @@ def tried(name: str, time: float = math.inf, **fields: Any) -> TrialResult:
 
 
 def piece(**fields: Any) -> Intrusion:
-    """Make ground inside the track like that of the stop, elsewhere."""
+    """Make ground inside the track like that of the stop, at another position."""
     return dataclasses.replace(PIECE, **fields)
 
 
@@ -70,7 +70,7 @@ BELT = tried("closed track", 0.34)
 
 
 def made(contacts: Any = None, **fields: Any) -> c2d.Diagnosis:
-    """Make a diagnosis: wheels 2 and 1 slide on edge 3, unless told otherwise."""
+    """Make a diagnosis, by default with wheels 2 and 1 sliding on edge 3."""
     columns = {name: np.array(column) for name, column in (CONTACTS | (contacts or {})).items()}
     plain: dict[str, Any] = {
         "outcome": OUT.SEIZED,
@@ -130,7 +130,7 @@ def test_a_sentence_names_intrusion_contacts_and_trials() -> None:
             tried("friction x 2", 0.4, outcome=OUT.TIMED_OUT),
             "twice the friction: free after 0.4 s",
         ),
-        # A robot that tips over or is lost has not got free, however far it came.
+        # A robot that tips over or is lost is not free, however far it got.
         (
             tried("no belly", outcome=OUT.TIPPED_OVER, distance=0.12),
             "without its belly: tips over 120 mm further on",
@@ -165,7 +165,7 @@ def test_a_sentence_names_intrusion_contacts_and_trials() -> None:
         (tried("torque x 2", outcome=OUT.STALLED), "twice the torque: is stalled"),
         (tried("one motor", outcome=OUT.CYCLING), "one motor for all wheels: moves back and forth"),
         (tried("flippers level", outcome=OUT.HUNG_UP), "flippers level: hangs on its belly"),
-        # A robot that rattles is tried from several instants.
+        # Trials of a rattling robot start from several instants.
         (
             tried("torque x 2", 0.6, starts=5, freeing=4),
             "twice the torque: free after 0.6 s, then clears (4 of 5 times free)",
@@ -261,7 +261,7 @@ def test_the_sentence_of_a_transient_stop_says_only_how_it_went_on(control: str,
             "undercut",
             "the guide slides on it under a load of 150 N, a grouser under",
         ),
-        # A hundredth of the force is not worth a name.
+        # A contact with a hundredth of the force is not named.
         (
             {"normal_force": [150.0, 1.0, 60.0]},
             "straddled",
@@ -375,7 +375,7 @@ def test_a_stop_without_ground_inside_is_described_by_motors_and_surfaces(
             "nose",
             "hung up on the nose of its hull: the nose carries 40 % of the supporting force{AT}",
         ),
-        # On an edge, a steep robot lies on its underside all the same.
+        # A steep robot on an edge still lies on its underside.
         (
             1.05,
             (-0.87, 0.5),
@@ -410,7 +410,7 @@ def test_standing_on_the_tail_differs_from_lying_on_the_belly(
 
 @pytest.mark.parametrize(("kind", "name"), [(1, "the belt"), (2, "the skid")])
 def test_the_body_of_a_closed_track_is_no_wheel(kind: int, name: str) -> None:
-    # Ground that a branch found inside of it.
+    # Ground that was inside a branch at its start.
     contacts = {"body": [0, 0, 0], "body_kind": [kind] * 3, "in_pocket": [True, False, False]}
     piece = dataclasses.replace(PIECE, bodies=(0, 0), body_kinds=(kind, kind))
     said = str(made(contacts, intrusion=piece, outcome=OUT.SLIPPING))

@@ -40,7 +40,7 @@ def test_an_advance_in_pieces_ends_where_one_in_one_piece_does(scenario: Scenari
     state = sim.state()
     assert sim.time == whole.time == 1.0
     assert sim.snapshot() != whole.snapshot()  # other steps
-    # On level ground a steady acceleration is followed exactly, but for the contacts' softness.
+    # On level ground a steady acceleration is followed exactly, except for the contacts' softness.
     for name in ("position", "velocity", "chassis_angle", "track_position"):
         assert getattr(state, name) == pytest.approx(getattr(whole.state(), name), abs=1e-9)
 
@@ -94,7 +94,7 @@ def test_an_outcome_is_reported_and_does_not_end_the_simulation(scenario: Scenar
 
 
 def test_the_outcome_of_a_run_that_has_ended_is_judged_once(seizing: Scenario) -> None:
-    """To judge a stop takes trials, of 40 to 90 ms."""
+    """Judging a stop takes trials of 40 to 90 ms."""
     sim = c2d.Simulation(seizing)
     sim.advance(10.0)
     assert sim.state().outcome is c2d.Outcome.SEIZED
@@ -322,7 +322,7 @@ def test_after_another_command_there_is_no_stop_until_the_robot_has_stopped_agai
     assert found is not None
     sim.command(speed=speed)
     if speed > 0.0:
-        # A slower command the same way frees nothing; its trials are as long as they may be.
+        # A slower command in the same direction frees nothing; its trials last as long as allowed.
         assert sim.to_run(trials=()).diagnosis is not None
     else:
         assert sim.diagnosis() is None

@@ -1,4 +1,4 @@
-"""Snapshots: a simulation goes on from its bytes, and no other bytes are taken for one."""
+"""Snapshots: a simulation continues from its bytes, and other bytes are refused."""
 
 import hashlib
 from pathlib import Path
@@ -15,7 +15,7 @@ DIGEST = 32
 
 
 def same(one: c2d.Simulation, other: c2d.Simulation) -> bool:
-    """Whether two simulations are in the same state, to the last bit of all they remember."""
+    """Whether two simulations are in the same state, to the last bit."""
     return one.snapshot() == other.snapshot()
 
 
@@ -62,7 +62,7 @@ def test_a_command_and_a_push_go_with_the_snapshot(scenario: Scenario) -> None:
         each.advance(1.0)
     assert same(sim, copy)
     assert copy.state().commanded_speed == 0.0
-    # Without the push the copy would go on otherwise.
+    # Without the push, the copy would continue differently.
     let_go = c2d.Simulation.from_snapshot(copy.snapshot())
     let_go.command(push=0.0)
     assert not same(let_go, copy)

@@ -1,4 +1,4 @@
-"""Terrains: what ground they make, where it ends, and that a robot can drive on it."""
+"""Terrains: their ground, its ends, and that a robot can drive on it."""
 
 import math
 from typing import Any

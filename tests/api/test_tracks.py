@@ -158,7 +158,7 @@ def test_a_wheel_that_turns_too_far_in_a_step_is_refused(radius: float, works: b
         for solver in (c2d.Solver(time_step=1e-3), c2d.Solver(time_step=5e-4), c2d.Solver())
     )
     fine.validate()
-    of_an_accuracy.validate()  # these are as short as it takes
+    of_an_accuracy.validate()  # these are as short as needed
     if works:
         coarse.validate()
         return

@@ -1,4 +1,4 @@
-"""What frees a robot that has stopped: trials, one push after another, and their runs."""
+"""Trials of a stopped robot, pushes, and their runs."""
 
 import math
 import pickle
@@ -67,7 +67,7 @@ def test_the_run_of_a_trial_from_several_starts_is_one_that_ended_as_most_of_the
     assert not run.diagnosis.stationary
     trials = [run.what_if("friction x 2"), run.what_if(friction=0.9)]
     for trial in trials:
-        # The first start alone would tell another story.
+        # The first start alone would give a different result.
         assert (trial.freed, trial.freeing, trial.starts) == (False, 2, 4)
         assert trial.run.time[0] > run.time[-1]
         assert trial.run.position[-1] == pytest.approx(trial.position, abs=1e-9)
@@ -245,7 +245,7 @@ def test_trials_end_for_a_robot_that_is_commanded_to_stop(seized: c2d.Run) -> No
     still = seized.what_if(drive=c2d.Drive(speed=0.0))
     assert not still.freed
     assert still.duration == pytest.approx(ESCAPE)
-    # What is ahead is ahead of the stop, whichever way it is told to drive.
+    # Ahead means ahead of the stop, whatever direction is commanded.
     back = seized.what_if(drive=c2d.Drive(speed=-0.4))
     assert not back.freed
     assert back.position[0] < seized.position[-1, 0] - 0.5

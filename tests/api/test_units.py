@@ -1,4 +1,4 @@
-"""Units of tables: none is missing, none contradicts the documentation."""
+"""Units of tables are complete, and agree with the documentation."""
 
 import inspect
 import re

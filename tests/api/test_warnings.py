@@ -1,4 +1,4 @@
-"""A scenario that is legal but hardly meant is simulated, and a warning names the field."""
+"""A valid scenario that is probably a mistake is simulated, and a warning names the field."""
 
 import math
 import pickle
@@ -126,7 +126,7 @@ DOUBTFUL: dict[str, tuple[Scenario, str, float]] = {
 
 
 def warnings_of(call: Callable[[], object]) -> list[c2d.ScenarioWarning]:
-    """Return what a call warns of, each at the line of this file."""
+    """Return the warnings of a call, which must be at the line of this file."""
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         call()
@@ -145,7 +145,7 @@ def test_an_unlikely_value_gets_a_warning_with_its_path(name: str) -> None:
 
 
 def test_a_tip_radius_that_a_wheel_radius_overrides_gets_a_warning() -> None:
-    # On the arms' own model, and where they take the robot's.
+    # With the arms' own model, and with the robot's.
     arms = with_flippers(c2d.BeltTrack(), c2d.LineOfWheels(5, wheel_radius=0.06))
     assert arms.flippers is not None
     tip = arms.flippers.tip_radius

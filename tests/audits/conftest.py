@@ -1,4 +1,4 @@
-"""Audits that several tests look at."""
+"""Audits that several tests use."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tests.audits.seizing import QUIET, SEIZING, STEP, seizing_file
 
 @pytest.fixture(scope="package", autouse=True)
 def _charts_once() -> Iterator[None]:
-    """Where a robot can jam takes half the time of its page, and many pages are of few robots."""
+    """Computing jams takes half the time of a page, and many pages have the same robots."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(chart, "_figure", functools.cache(chart._figure))
         yield
@@ -23,7 +23,7 @@ def _charts_once() -> Iterator[None]:
 
 @pytest.fixture(scope="session")
 def found() -> c2d.Audit:
-    """Four touching wheels on a step of 75 mm, everything known but the start."""
+    """Four touching wheels on a step of 75 mm, with only the start unknown."""
     return c2d.audit(SEIZING, STEP, unknown={}, repeats=20, **QUIET)
 
 

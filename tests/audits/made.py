@@ -1,4 +1,4 @@
-"""Audits whose runs are made up: what is said of them depends on no physics."""
+"""Audits with made-up runs, whose reports do not depend on physics."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def outcomes(counts: dict[str, int]) -> list[str]:
 
 
 def runs_of(name: str, robots: dict[str, list[str]], speeds: Any) -> xr.Dataset:
-    """Runs over one obstacle, with figures that differ from run to run."""
+    """Runs over one obstacle, with values that differ between runs."""
     ends = np.array([[[[end] * REPEATS for end in each]] for each in robots.values()])
     number = np.arange(ends.size).reshape(ends.shape)
     is_made = ends != ""
@@ -82,7 +82,7 @@ def runs_of(name: str, robots: dict[str, list[str]], speeds: Any) -> xr.Dataset:
 
 
 def made_of_file(folder: Path) -> AuditRecord:
-    """An audit of a file that seizes, with every verdict that there is, and three repairs."""
+    """An audit of a file that seizes, with all kinds of verdicts and three repairs."""
     path = folder / "cart.urdf"
     mass = '<mass value="8"/>'
     text = seizing_file().replace(mass, f'<origin xyz="-0.024 0 0.068"/>{mass}')
@@ -131,7 +131,7 @@ def assumed() -> tuple[Assumption, ...]:
 
 
 def searched(robot: c2d.Robot, speeds: Any) -> RepairSearch:
-    """Wheels and belts that are confirmed, and gears that are not."""
+    """Confirmed wheels and belts, and unconfirmed gears."""
     every = candidates_of(robot, ["chassis"])
     wheels = next(each for each in every if each.kind == "wheels")
     gears = next(each for each in every if each.kind == "gears")
@@ -160,7 +160,7 @@ def searched(robot: c2d.Robot, speeds: Any) -> RepairSearch:
 
 
 def doubtful(audit: AuditRecord) -> AuditRecord:
-    """The same with an error of lint, one certain verdict less, and no repair that is confirmed."""
+    """The same with an error of lint, one certain verdict less, and no confirmed repair."""
     error = replace(audit.lint[0], severity="error")
     warnings = tuple(replace(error, severity="warning", where="") for _ in range(2))
     unsure = tuple(
@@ -185,7 +185,7 @@ def doubtful(audit: AuditRecord) -> AuditRecord:
 
 
 def made_of_robot() -> AuditRecord:
-    """An audit of a robot with arms that nothing holds, where all is known and little was run."""
+    """An audit of a robot with free arms, without unknowns and with few runs."""
     robot = c2d.robots.absolem(track="public")
     drive = c2d.Drive(speed=0.3, schedule=((0.0, 0.1), (1.0, 0.3)))
     obstacles: dict[str, Terrain] = {"kerb": OBSTACLES["kerb"], "ramp": c2d.terrains.ramp(0.2)}

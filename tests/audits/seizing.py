@@ -1,4 +1,4 @@
-"""A robot that is known to seize, as such and as a file."""
+"""A robot that is known to seize, as an object and as a file."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ SAID = Path(__file__).with_name("said.txt")
 
 
 def seizing_file(name: str = "cart", wheels: str = "") -> str:
-    """Write a cart that seizes there as URDF, with names of one's own for robot and wheels."""
+    """Write a cart that seizes there as URDF, with given names for robot and wheels."""
     places = {"front": 0.1825, "fore": 0.060833, "aft": -0.060833, "rear": -0.1825}
     pairs = [pair(f"{each}{wheels}", x, radius="0.0608") for each, x in places.items()]
     box = collision('<box size="0.3 0.1 0.05"/>', '<origin xyz="0 0 0.05"/>')

@@ -1,4 +1,4 @@
-"""An audit says of a seizure whether it depends on rotors and on restitution."""
+"""An audit reports whether a seizure depends on rotors and on restitution."""
 
 from dataclasses import replace
 from typing import Any

@@ -36,7 +36,7 @@ def test_files_that_others_include_and_files_of_macros_are_no_models(forest: Pat
 
 
 def test_what_a_scene_of_mjcf_includes_is_a_model(tmp_path: Path) -> None:
-    """It is read alone; the scene is refused, as the reader does not follow includes of MJCF."""
+    """It is read on its own; the scene is refused, as the reader does not follow MJCF includes."""
     folder = tmp_path / "robots"
     folder.mkdir()
     shutil.copy(FILES / "cart.xml", folder)

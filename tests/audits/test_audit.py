@@ -75,7 +75,7 @@ def test_the_table_has_the_runs_behind_the_verdicts(found: c2d.Audit) -> None:
 
 
 def test_an_obstacle_is_left_as_soon_as_its_verdict_is_certain(found: c2d.Audit) -> None:
-    """All of the first nine runs seize while the belt clears: the other eleven change nothing."""
+    """The first nine runs seize while the belt clears, so the other eleven change nothing."""
     assert (found.table["outcome"] != "").sum("sample").values.ravel().tolist() == [9, 9]
     (verdict,) = found.verdicts
     assert verdict.seized.runs == verdict.belt_cleared.runs == 9
@@ -379,7 +379,7 @@ def test_reading_an_audited_file_is_quiet() -> None:
 @pytest.mark.parametrize("how", [{"engine": "isaac"}, {"ground_friction": 0.4}])
 def test_a_reading_is_audited_as_it_was_read(how: Any) -> None:
     path = FILES / "cart.urdf"
-    # Robots and grounds are what differs, and they do so from the start.
+    # Only robots and grounds differ, from the start.
     few: Any = {"samples": 2, "repeats": 1, "duration": 0.5, "repair": False, **QUIET}
     reading = quietly(path, **how)
     of_file, of_reading = c2d.audit(path, **few, **how), c2d.audit(reading, **few)
@@ -390,7 +390,7 @@ def test_a_reading_is_audited_as_it_was_read(how: Any) -> None:
 
 
 def test_a_reading_is_not_read_again(tmp_path: Path) -> None:
-    """Neither for its friction on other floors: its file may be gone."""
+    """Nor for its friction on other floors: its file may be gone."""
     reading = read(tmp_path, urdf(WHEELS))
     (tmp_path / "cart.urdf").unlink()
     few: Any = {"samples": 1, "repeats": 1, "duration": 0.1, "repair": False, **QUIET}
@@ -460,7 +460,7 @@ def test_a_slow_robot_is_not_driven_faster_than_it_can(most: float) -> None:
 
 
 def test_the_speeds_of_a_robot_that_creeps_are_told_apart() -> None:
-    """A tenth of 4 mm/s was rounded to none, and all of 0.4 mm/s, too."""
+    """A tenth of 4 mm/s, and 0.4 mm/s itself, were rounded to 0."""
     slow = replace(SEIZING, drivetrain=replace(SEIZING.drivetrain, max_speed=4e-4))
     found = c2d.audit(
         slow, STEP, duration=0.01, samples=9, repeats=1, repair=False, seed=2, **QUIET

@@ -37,7 +37,7 @@ def share(hits: int, runs: int = 80) -> Proportion:
 
 @pytest.fixture
 def made(of_file: c2d.Audit) -> Made:
-    """Makes checks with verdicts and lint of one's own, all else that of a cart."""
+    """Makes checks with given verdicts and lint, and otherwise those of a cart."""
     seizing = of_file.verdicts[0]
 
     def verdict(label: str, word: str, hits: int, *at: tuple[int, int]) -> Verdict:
@@ -71,10 +71,10 @@ def compared(before: Check, now: Check, folder: Path) -> tuple[list[str], str]:
 @pytest.mark.parametrize(
     ("before", "now", "is_new"),
     [
-        # as it was, and a little more often
+        # as before, and a little more often
         (("seizes", 10), ("seizes", 10), False),
         (("seizes", 10), ("seizes", 16), False),
-        # a word that was not said: equal builds give equal runs
+        # without this note: equal builds give equal runs
         (("not certain", 7), ("seizes", 9), True),
         (("belt fails, too", 8), ("seizes", 9), True),
         # far more often
@@ -83,7 +83,7 @@ def compared(before: Check, now: Check, folder: Path) -> tuple[list[str], str]:
         (("not certain", 5), ("seizes", 20), True),
         # said not to
         (("does not seize", 1), ("seizes", 9), True),
-        # not seizing is never new
+        # the absence of seizures is never new
         (("does not seize", 0), ("not certain", 7), False),
         (("does not seize", 0), ("belt fails, too", 40), False),
     ],

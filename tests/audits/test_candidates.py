@@ -1,4 +1,4 @@
-"""Other robots driven by an audit: the belt for comparison, and candidates for a repair."""
+"""Other robots of an audit: the belt for comparison, and candidates for a repair."""
 
 from dataclasses import replace
 from typing import Any
@@ -65,7 +65,7 @@ def test_placed_wheels_get_one_more_in_the_deepest_pocket() -> None:
 
 
 def test_the_deepest_pocket_is_that_of_the_changed_carrier_also_on_arms_at_both_ends() -> None:
-    # The rear arm is seen from its tip on: its pockets are in the other order.
+    # The rear arm is listed from its tip, with its pockets in reverse order.
     placed = c2d.HybridWheels(((0.05, 0, 0.05), (0.12, 0, 0.045), (0.2, 0, 0.04)))
     built = c2d.robots.engineer().flippers
     assert built is not None

@@ -1,4 +1,4 @@
-"""What a change of an audited file is, on audits whose runs are made up."""
+"""Changes of an audited file, on audits with made-up runs."""
 
 from dataclasses import replace
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""The chart of an audit: what it asks for, and how it draws what it is told."""
+"""The chart of an audit: its input and its drawing."""
 
 import re
 from dataclasses import replace
@@ -25,7 +25,7 @@ def region(corners: list[tuple[float, float]], **changed: Any) -> JamRegion:
 
 
 def test_a_chart_draws_each_region_in_its_place(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Two regions of two pairs, one of no pair, one of the belt, and pieces that are no area."""
+    """Two regions of two pairs, one without a pair, one of the belt, and pieces without area."""
     robot = replace(SEIZING, name="charted")
     most = 2.0 * robot.outline.front_radius
     asked: list[Any] = []

@@ -128,7 +128,7 @@ def test_any_name_of_a_file_has_an_address(check: Check) -> None:
 
 
 def results(text: str) -> list[dict[str, Any]]:
-    """The results, after a look at all that SARIF 2.1.0 and code scanning require."""
+    """The results, after checks of all requirements of SARIF 2.1.0 and code scanning."""
     log = json.loads(text)
     assert log["version"] == "2.1.0"
     assert log["$schema"].endswith("sarif-2.1.0.json")

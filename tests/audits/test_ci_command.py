@@ -30,7 +30,7 @@ def run(capsys: Any, *arguments: str) -> tuple[int, str, str]:
 
 @pytest.fixture
 def repository(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A repository of robots: we are in its root."""
+    """A repository of robots; its root is the working directory."""
     (tmp_path / ".git").mkdir()
     (tmp_path / "models").mkdir()
     for name in ("one", "two"):
@@ -41,7 +41,7 @@ def repository(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 @pytest.fixture
 def quick(repository: Path, monkeypatch: pytest.MonkeyPatch, of_file: c2d.Audit) -> Path:
-    """The same, with audits that take no time: all return the result of a cart that seizes."""
+    """The same with instant audits, which all return the result of a cart that seizes."""
     monkeypatch.setattr(command, "audit", instant_audit(of_file))
     monkeypatch.setattr(c2d.Audit, "to_html", lambda _, path, **__: path.write_text("a page"))
     return repository
@@ -156,7 +156,7 @@ def test_a_baseline_is_written_compared_and_updated(quick: Path, capsys: Any) ->
     update = ("--baseline", "audit.json", "--update-baseline")
     status, out, _ = run(capsys, models := "models/one.urdf", "--no-html", *update)
     assert (status, out.splitlines()[-1]) == (0, "The baseline is in audit.json")
-    # It seizes as it did: nothing is new.
+    # It seizes as before: nothing is new.
     status, out, _ = run(capsys, models, "--no-html", "--baseline", "audit.json")
     assert status == 0
     assert "Since the baseline, models/one.urdf: nothing moved" in out
@@ -230,9 +230,9 @@ sys.exit(main(sys.argv[3:]))
 
 
 def python_of_this_test(folder: Path, *program: str) -> dict[str, str]:
-    """An environment in which `python` is the interpreter that runs this test, with its package.
+    """An environment in which `python` is the interpreter of this test, with its package.
 
-    It runs a program in place of the one that it is asked for, if there is one.
+    It can run another program instead of the requested one.
     """
     (folder / "bin").mkdir()
     shim = folder / "bin" / "python"
@@ -248,7 +248,7 @@ def python_of_this_test(folder: Path, *program: str) -> dict[str, str]:
 
 
 def step(action: Any, name: str, inputs: dict[str, str], env: dict[str, str]) -> Any:
-    """Run a step of the action as GitHub does."""
+    """Run a step of the action like GitHub."""
     usual = {key: str(each.get("default", "")) for key, each in action["inputs"].items()}
     given = {**usual, **inputs}
     (found,) = [each for each in action["runs"]["steps"] if each.get("name") == name]
@@ -305,7 +305,7 @@ def test_the_action_installs_its_own_revision_and_keeps_what_it_made() -> None:
     steps = {each.get("name", each.get("uses")): each for each in action["runs"]["steps"]}
     assert "file://$GITHUB_ACTION_PATH" in steps["Install"]["run"]
     assert steps["actions/upload-artifact@v4"]["if"] == "always()"
-    # A step that runs has a shell, an input has a use.
+    # A step that runs something has a shell, and every input is used.
     assert all("shell" in each for each in steps.values() if "run" in each)
     text = (ROOT / "action.yml").read_text("utf-8")
     assert all(f"${{{{ inputs.{name} }}}}" in text for name in action["inputs"])

@@ -99,7 +99,7 @@ def test_after_ctrl_c_the_command_says_what_is_kept(
 
 @pytest.fixture
 def made(monkeypatch: Any, tmp_path: Path, found: c2d.Audit) -> Path:
-    """An empty folder to work in, and an audit that takes no time."""
+    """An empty working directory, and an instant audit."""
     monkeypatch.setattr(command, "audit", instant_audit(found))
     monkeypatch.chdir(tmp_path)
     return tmp_path
@@ -217,7 +217,7 @@ def test_a_call_with_arguments_that_no_option_has_is_no_command() -> None:
 
 @pytest.fixture
 def expanding(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A xacro file, named from the folder above its own, in which we are."""
+    """A xacro file, named relative to the folder above its own, which is the working directory."""
     pytest.importorskip("xacrodoc")
     (tmp_path / "models").mkdir()
     path = Path("models") / "cart.urdf.xacro"
@@ -338,7 +338,7 @@ WITHOUT_OPTION = {"obstacles", "vary", "unknown", "drive", "duration", "executor
 
 
 def keywords() -> list[str]:
-    """All that `audit` and `read_robot` take."""
+    """All keywords of `audit` and `read_robot`."""
     names = [
         *inspect.signature(c2d.audit).parameters,
         *inspect.signature(c2d.read_robot).parameters,
@@ -377,7 +377,7 @@ def test_advice_is_given_as_options(advice: str, expected: str) -> None:
 
 
 def test_a_file_ten_times_too_large_is_refused_before_any_run(capsys: Any) -> None:
-    """It would be the audit of another robot."""
+    """Otherwise another robot would be audited."""
     status, out, err = run(capsys, str(ROBOTS / "eng.urdf"), "--mesh", "leave_out")
     assert (status, out) == (2, "")
     assert "--scale must be given: eng.urdf is 5.32 m long" in err

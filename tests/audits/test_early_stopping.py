@@ -14,7 +14,7 @@ from crawler2d.sweeps.statistics import wilson
 
 
 def part_of(own: list[str], belt: list[str], samples: int, levels: int = 1) -> xr.Dataset:
-    """Runs over one obstacle; only the first ones are finished."""
+    """Runs over one obstacle, of which only the first are finished."""
     ends = np.array([[each + [""] * (samples - len(each))] for each in (own, belt)])[..., None]
     dims = ("model", "terrain", "sample", "repeat")
     text = (dims, np.where(ends == "seized", "1-2", ""))
@@ -39,9 +39,9 @@ def seen(seized: int, made: int, samples: int) -> tuple[Verdict, bool]:
 
 @pytest.mark.parametrize("samples", [36, pytest.param(80, marks=pytest.mark.soak)])
 def test_intervals_cover_the_rate_as_often_as_those_of_all_runs(samples: int) -> None:
-    """Exactly, over all that can come: the share of looks that end with an interval about it.
+    """Exactly, over all possible outcomes: the fraction of checks whose interval contains it.
 
-    And it is found to seize exactly as often as if all runs were made.
+    And it is found to seize exactly as often as with all runs.
     """
     ends = {
         made: [seen(k, made, samples) for k in range(made + 1)] for made in look_counts(samples)
@@ -104,7 +104,7 @@ def test_a_verdict_on_a_part_that_seizes_is_that_on_all_runs(draws: int) -> None
 def test_the_belt_fails_for_certain_once_neither_can_reach_95_percent(
     own: list[str], belt: list[str], certain: bool
 ) -> None:
-    """Of 36 samples, two that fail are too many; and none may have seized in place of the belt."""
+    """Two failures among 36 samples are too many; and none may have seized instead of the belt."""
     table = part_of(own, belt, 36)
     verdict = verdict_of(table, "step")
     assert verdict.result == "belt fails, too"

@@ -1,4 +1,4 @@
-"""Which candidates of a repair can be held at all."""
+"""Which candidates of a repair can jam at all."""
 
 import numpy as np
 import pytest
@@ -38,7 +38,7 @@ def test_grounds_and_wheels_without_computed_jams_exclude_no_candidate() -> None
         (0.01, 0.8, True),
         (0.01, 0.49, False),
         (0.01, 0.81, False),
-        (0.001, 0.6, False),  # as shallow holds a belt, too
+        (0.001, 0.6, False),  # ground this shallow also holds a belt
         (0.00101, 0.6, True),
     ],
 )

@@ -1,4 +1,4 @@
-"""What is said of audits in a terminal, on their page and as data: as in `kept`, word for word."""
+"""Reports of audits in a terminal, as a page and as data are as in `kept`, word for word."""
 
 import json
 import re
@@ -30,7 +30,7 @@ def audits(tmp_path_factory: pytest.TempPathFactory) -> dict[str, AuditRecord]:
 def check_each(
     audits: dict[str, AuditRecord], kind: str, write: Callable[[AuditRecord], str]
 ) -> None:
-    """Compare what is written of each audit; of the doubtful one its differences are kept."""
+    """Compare the report of each audit; for the doubtful one, its differences are stored."""
     texts = {name: write(audit) for name, audit in audits.items()}
     for name in ("file", "robot"):
         check_kept(KEPT / f"{name}.{kind}", texts[name])
@@ -52,7 +52,7 @@ def test_the_sections_of_a_page_are_as_kept(audits: dict[str, AuditRecord]) -> N
 
 
 def page_of(audit: AuditRecord) -> str:
-    """Write the sections of a page, a tag a line."""
+    """Write the sections of a page, with one tag per line."""
     diffs = {each.description: "-old\n+<new>" for each in audit.repairs[:1]}
     parts = {
         "answer": sections.answer_section(audit),
@@ -72,7 +72,7 @@ def page_of(audit: AuditRecord) -> str:
 def test_what_other_programs_read_of_audits_is_as_kept(
     audits: dict[str, AuditRecord], tmp_path: Path
 ) -> None:
-    """Of three files, of which one cannot be read, without a baseline and with one."""
+    """Three files, one of which cannot be read, with and without a baseline."""
     (tmp_path / ".git").mkdir()
     checks = [check_of(tmp_path / f"{name}.urdf", audits[name]) for name in ("file", "doubtful")]
     error = c2d.ScenarioError("broken.urdf:3, 7", 1, "must be 2")
@@ -111,5 +111,5 @@ def test_a_baseline_and_what_changed_since_it_are_as_kept(
 
 
 def rounded(text: str) -> str:
-    """Leave out digits that rounding decides."""
+    """Remove digits that depend on rounding."""
     return re.sub(r"\d+\.\d{7,}(e-?\d+)?", lambda found: f"{float(found[0]):.6g}", text)

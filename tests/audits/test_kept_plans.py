@@ -1,4 +1,4 @@
-"""What an audit plans for a robot before it runs, of lengths alone: as in `kept`, line by line."""
+"""Plans of an audit before it runs, from lengths only, are as in `kept`, line by line."""
 
 import re
 from collections.abc import Iterator
@@ -24,7 +24,7 @@ PLACED = c2d.HybridWheels(
 
 
 def with_arms(track: c2d.LineOfWheels | c2d.HybridWheels) -> c2d.Robot:
-    """A robot whose arms at both ends have wheels of their own."""
+    """A robot whose arms at both ends have their own wheels."""
     arms = c2d.robots.engineer().flippers
     assert arms is not None
     return c2d.robots.engineer(
@@ -33,7 +33,7 @@ def with_arms(track: c2d.LineOfWheels | c2d.HybridWheels) -> c2d.Robot:
 
 
 def smooth(robot: c2d.Robot) -> c2d.Robot:
-    """The same with no grousers, whose gear wheels need heights of their own."""
+    """The same without grousers, so that gear wheels need their own heights."""
     return replace(robot, outline=replace(robot.outline, grouser_height=0.0, grouser_thickness=0.0))
 
 
@@ -60,7 +60,7 @@ def told(ranges: Ranges) -> Iterator[str]:
 
 
 def plan(robot: c2d.Robot) -> Iterator[str]:
-    """Tell what is known of an audit of a robot before the first run."""
+    """Describe the audit of a robot before the first run."""
     belt = belt_of(robot)
     yield f"belt: {belt.reason}, {belt.robot.track}"
     if belt.robot.flippers is not None:
@@ -85,7 +85,7 @@ def plan(robot: c2d.Robot) -> Iterator[str]:
 
 
 def rounded(lines: Iterator[str]) -> str:
-    """Leave out digits that rounding decides."""
+    """Remove digits that depend on rounding."""
     text = "\n".join(lines)
     return re.sub(r"-?\d+\.\d+(e-?\d+)?", lambda found: f"{round(float(found[0]), 9):g}", text)
 

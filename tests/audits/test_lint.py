@@ -1,4 +1,4 @@
-"""Every rule of lint fires on its mistake, and is silent on the same robot without it."""
+"""Every rule of lint reports its mistake, and nothing for the same robot without it."""
 
 import re
 from dataclasses import replace
@@ -21,7 +21,7 @@ MOTORS = "".join(BLOCK.format(name=name) for name in NAMES)
 
 
 def lint(*given: Any, **options: Any) -> tuple[Finding, ...]:
-    """Lint a robot or a file; every finding is kept word for word."""
+    """Lint a robot or a file; every finding must be among the stored ones, word for word."""
     found = module.lint(*given, **options)
     told = [f"{each.severity}, {each.rule}: {each.message} [{each.where}]" for each in found]
     check_said(SAID, told)

@@ -1,4 +1,4 @@
-"""What an audit shows while it runs: parts as they are ready, and on a terminal a count of runs."""
+"""Output of an audit while it runs: finished parts, and on a terminal a count of runs."""
 
 import io
 import sys

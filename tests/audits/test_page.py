@@ -60,7 +60,7 @@ class Page(HTMLParser):
             self.texts[number] += data
 
     def all(self, tag: str, **attributes: str) -> Iterator[tuple[dict[str, str | None], str]]:
-        """Yield attributes and text of what has a tag and these attributes."""
+        """Yield attributes and text of elements with a tag and these attributes."""
         for (name, found), text in zip(self.tags, self.texts, strict=True):
             if name == tag and attributes.items() <= found.items():
                 yield found, text
@@ -134,7 +134,7 @@ def test_every_link_has_a_target_and_every_name_is_there_once(file_page: Page) -
 
 
 def test_names_are_only_ever_text(of_file: c2d.Audit, tmp_path: Path) -> None:
-    """Those of robot and links in a file, of the file, and of obstacles."""
+    """Names of robot and links in a file, of the file, and of obstacles."""
     name = f"{HOSTILE}</TITLE><script>alert(1)</script>rouge-gorge é"
     path, harmless = tmp_path / "cart <b>&.urdf", tmp_path / "cart.urdf"
     quoted = html.escape(name.replace("\u2028", " "))
@@ -326,7 +326,7 @@ def test_how_it_was_made_names_runs_seed_and_command(of_file: c2d.Audit, file_pa
     assert rows["seed of the draws"] == "3"
     assert c2d.__version__ in rows["crawler2d"]
     *_, (_, again) = file_page.all("pre")
-    # Obstacles of one's own are no option of the command.
+    # Custom obstacles are not an option of the command.
     assert of_file.reading is not None
     path = of_file.reading.path
     assert again.startswith(f"crawler2d.audit({str(path)!r}, obstacles=..., samples=12")
@@ -488,7 +488,7 @@ def test_the_robot_is_drawn_over_the_shapes_of_its_file(of_file: c2d.Audit) -> N
     svg = draw_robot(of_file.robot, "a cart", shapes)
     wheels, outlines = circles(svg), re.findall(r'<path d="([^"]*)" class="collision"', svg)
     assert len(wheels) == 4
-    assert len(outlines) == 5  # the two sides are one
+    assert len(outlines) == 5  # the two sides coincide
     for x, y, radius in wheels:
         # A circle in pieces that are rounded to a tenth of a pixel begins at the rim of its wheel.
         starts = [np.array(re.findall(r"-?[\d.]+", each)[:2], float) for each in outlines]
@@ -527,7 +527,7 @@ def test_equal_pockets_are_drawn_once_and_all_to_one_scale() -> None:
 
 
 def test_wheels_that_touch_hold_at_any_friction() -> None:
-    """Their walls are upright at the bottom, but for rounding."""
+    """Their walls are vertical at the bottom, except for rounding."""
     robot = c2d.robots.engineer(flippers=None, track=c2d.CircumferentialWheels(24))
     drawn = draw_pockets(robot, pockets(robot))
     assert set(re.findall(r"alone it holds ([^<]*)<", drawn)) == {"at any friction"}

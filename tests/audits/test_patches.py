@@ -1,4 +1,4 @@
-"""From a file that seizes to one that does not: read, audited, changed, read and audited again."""
+"""A file that seizes is read, audited, changed, and read and audited again without seizures."""
 
 import html
 import json
@@ -18,7 +18,7 @@ from tests.audits.seizing import QUIET, SAID, SEIZING, STEP
 from tests.kept import refusing
 from tests.reading.carts import quietly
 
-# In a file each wheel has a motor of its own; with the preset's torque one of them would stall.
+# In a file each wheel has its own motor; with the preset's torque one of them would stall.
 STRONG = replace(SEIZING, drivetrain=replace(SEIZING.drivetrain, max_torque=60.0))
 
 
@@ -26,7 +26,7 @@ STRONG = replace(SEIZING, drivetrain=replace(SEIZING.drivetrain, max_torque=60.0
     scope="module", params=["sdf", "urdf", pytest.param("mjcf", marks=pytest.mark.soak)]
 )
 def audited(request: Any, tmp_path_factory: Any) -> c2d.Audit:
-    """Four touching wheels as a file, on a step of 75 mm, everything known but the start."""
+    """Four touching wheels as a file, on a step of 75 mm, with only the start unknown."""
     path = tmp_path_factory.mktemp("model") / f"robot.{request.param}"
     getattr(STRONG, f"to_{request.param}")(path, friction=0.9)
     return c2d.audit(path, STEP, unknown={}, repeats=20, quick=True, engine="gz", **QUIET)
@@ -89,7 +89,7 @@ def test_without_a_confirmed_repair_belts_are_written(tmp_path: Path) -> None:
 
 @pytest.fixture
 def helped(audited: c2d.Audit) -> c2d.Audit:
-    """An audit with wheels that seize in a fifth of the runs, and are not confirmed."""
+    """An audit with unconfirmed wheels that seize in a fifth of the runs."""
     assert audited.repaired is not None
     best, *others = audited.repairs
     assert best.kind == "wheels"

@@ -51,7 +51,7 @@ def test_the_bottom_of_a_pocket_lies_on_both_wheels_of_any_size(
     place = (apart * math.cos(slope), apart * math.sin(slope), front)
     width, _, depth, friction = pocket_between((0.0, 0.0, rear), place)
     ahead = math.sqrt(max(rear**2 - (rear - depth) ** 2, 0.0))
-    # Of the two points of the rear wheel at that height, one is on the front wheel.
+    # One of the two points of the rear wheel at that height is on the front wheel.
     off = [math.hypot(width - x, front - depth) - front for x in (ahead, -ahead)]
     assert min(map(abs, off)) < 1e-6
     if depth < rear:

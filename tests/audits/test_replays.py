@@ -1,4 +1,4 @@
-"""Which run of an audit its page replays, and what it says of it."""
+"""The run that the page of an audit replays, and its description."""
 
 from dataclasses import replace
 from types import SimpleNamespace
@@ -142,7 +142,7 @@ def test_the_first_replay_alone_is_shown_at_first(
 def test_an_obstacle_on_which_it_seizes_by_the_rule_is_replayed_first(
     made: AuditRecord, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Then the others, by how often it seizes; all beside the best repair, if there is one."""
+    """Then the others, by rate of seizing; all next to the best repair, if there is one."""
     step, gap, stairs, kerb, _, knife = made.verdicts
     often = replace(stairs, seized=replace(stairs.seized, rate=0.99))
     asked: dict[str, Any] = {}
@@ -170,7 +170,7 @@ def test_an_obstacle_on_which_it_seizes_by_the_rule_is_replayed_first(
 
 
 def test_the_other_robot_drives_with_its_tracks_alone(made: AuditRecord) -> None:
-    """All else is what was drawn for the run."""
+    """Everything else is as drawn for the run."""
     own = c2d.Scenario(made.robot, c2d.terrains.step(0.07)).replace({"robot.mass": 17.5})
     table = made.table.assign(scenario=made.table["outcome"].astype(object))
     table["scenario"][:] = own.to_json()

@@ -1,4 +1,4 @@
-"""How an audit looks and searches, on runs that are made up: which are made, and what is chosen."""
+"""Checks and searches of an audit with made-up runs: which runs are made, and what is chosen."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ COUNT = RunCounter(None, 1)
 
 
 def table_of(ends: Mapping[str, list[str]], name: str = "step", **columns: Any) -> xr.Dataset:
-    """Runs of one obstacle, one for each sample, at one speed."""
+    """Runs of one obstacle at one speed, one for each sample."""
     outcomes = np.array([[[[end] for end in each]] for each in ends.values()])
     dims = ("model", "terrain", "sample", "repeat")
     filled = {key: (dims, np.full(outcomes.shape, value)) for key, value in columns.items()}
@@ -38,7 +38,7 @@ def table_of(ends: Mapping[str, list[str]], name: str = "step", **columns: Any) 
 
 @dataclass
 class Course:
-    """Runs whose ends are known before they are made."""
+    """Runs whose ends are given in advance."""
 
     ends: dict[str, list[str]]
     driven: list[tuple[str, int]] = field(default_factory=list)
@@ -62,7 +62,7 @@ class Course:
 
 
 def driven(own: list[str], belt: list[str]) -> tuple[list[tuple[str, int]], str]:
-    """Which runs are made until a verdict is certain, and the verdict."""
+    """Return the runs made until a verdict is certain, and the verdict."""
     course: Any = Course({OWN: own, BELT: belt})
     verdict, _ = sampling.verdict_on(course, "step", COUNT)
     return course.driven, verdict.result
@@ -94,7 +94,7 @@ def test_the_belt_drives_as_soon_as_the_robot_seizes_or_clears_less_than_95_perc
 
 @dataclass
 class MadeRuns:
-    """How runs are asked for, and what they are."""
+    """Records requests for runs, and returns given ones."""
 
     course_of: Any
     unknown: Mapping[str, Any] = field(default_factory=dict)
@@ -166,7 +166,7 @@ def best_of(
     seized: int = 40,
     is_quick: bool = False,
 ) -> tuple[int, list[int]]:
-    """Which candidate is chosen, and how many runs each round has; some fail in the first runs."""
+    """Return the chosen candidate, and the runs of each round; some fail in the first runs."""
     sizes: list[int] = []
     seen: dict[int, int] = {}
     number = {each.robot.track: k for k, each in enumerate(candidates(count))}

@@ -48,7 +48,7 @@ def test_with_flippers_there_is_a_higher_step() -> None:
 
 
 def test_a_closed_track_clears_them() -> None:
-    """The highest are near what a rigid belt climbs; without flippers it is none too strong."""
+    """The highest are close to the limit of a rigid belt, which is not strong without flippers."""
     robot = c2d.robots.absolem()
     ends = []
     for ground in standard_obstacles(robot, 0.9).values():
@@ -57,7 +57,7 @@ def test_a_closed_track_clears_them() -> None:
     assert ends == ["cleared"] * len(ends)
 
 
-# What is not known
+# Unknowns
 
 
 def test_stated_figures_of_a_file_have_narrow_ranges(tmp_path: Path) -> None:
@@ -122,7 +122,7 @@ def test_wheels_on_the_right_have_the_names_of_the_file_where_each_track_has_its
     )
 
 
-# How it is driven
+# Driving
 
 
 def test_flippers_are_raised_before_the_obstacle() -> None:

@@ -26,7 +26,7 @@ SAMPLES, REPEATS = 40, 2
 
 
 def table(own: list[str], belt: list[str], **columns: Any) -> xr.Dataset:
-    """One obstacle: the ends of each sample's runs, equal for both repeats."""
+    """One obstacle, with the same ends in both repeats of each sample."""
     ends = np.array([[[[end] * REPEATS for end in ends]] for ends in (own, belt)])
     dims = ("model", "terrain", "sample", "repeat")
     usual: dict[str, Any] = {
@@ -82,7 +82,7 @@ def test_it_seizes_where_the_lower_bound_is_above_5_percent(seized: int, word: s
 
 @pytest.mark.parametrize(("clears", "word"), [(38, "seizes"), (37, "belt fails, too")])
 def test_a_belt_that_clears_in_95_percent_need_not_be_paired(clears: int, word: str) -> None:
-    """Of the five that seize, the belt clears three or two."""
+    """The belt clears three or two of the five that seize."""
     belt = ends(hung_up=SAMPLES - clears, cleared=clears)
     assert verdict(ends(seized=5, hung_up=35), belt).result == word
 
@@ -91,7 +91,7 @@ def test_a_belt_that_clears_in_95_percent_need_not_be_paired(clears: int, word: 
 def test_if_the_belt_often_fails_only_seized_runs_that_it_clears_count(
     of_belt: int, word: str
 ) -> None:
-    """It seizes on twenty floors; the belt gets over on some of these, and stands on all others."""
+    """It seizes on twenty floors; the belt clears on some of these, and stops on all others."""
     assert (wilson(of_belt, SAMPLES).low > 0.05) is (word == "seizes")
     found = verdict(ends(seized=20, slipping=20), ends(cleared=of_belt, slipping=SAMPLES - of_belt))
     assert found.result == word
@@ -99,7 +99,7 @@ def test_if_the_belt_often_fails_only_seized_runs_that_it_clears_count(
 
 
 def test_a_repair_is_compared_with_the_belt() -> None:
-    """It clears ten floors, of thirty that the belt clears."""
+    """It clears ten of the thirty floors that the belt clears."""
     pair = table(ends(cleared=10, slipping=30), ends(cleared=30, slipping=10))
     own, belt = (ObstacleRuns(pair, model, "step") for model in (OWN, BELT))
     both = own.proportion(own.cleared, among=belt.cleared)

@@ -1,4 +1,4 @@
-"""benches/accuracy: cells are kept, runs resume, verdicts hold, and the page reports results."""
+"""benches/accuracy: cells are stored, runs resume, verdicts hold, and the page reports results."""
 
 import json
 from collections.abc import Sequence
@@ -172,8 +172,8 @@ def test_the_intervals_of_two_looks_share_the_error() -> None:
 
 
 def test_a_difference_at_the_bound_is_rarely_called_small() -> None:
-    # Chaotic cells at a rate near a half, looked at twice: the verdict is wrong in one of 20 at
-    # most; of 400 cells up to 30, with a probability of 99 %.
+    # Chaotic cells at a rate near a half, checked twice: at most one verdict in 20 is wrong, so of
+    # 400 cells up to 30, with a probability of 99 %.
     random = np.random.default_rng(0)
     coarse = random.random((400, 1600)) < 0.5 + CELL_BOUND
     fine = random.random((400, 1600)) < 0.5

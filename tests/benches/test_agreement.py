@@ -42,7 +42,7 @@ def test_a_pair_has_both_ends_and_both_balances(tmp_path: Path) -> None:
     path = tmp_path / "pairs.json.xz"
     pairs.run(1, path)
     (pair,) = pairs.read_pairs(path)
-    assert [end["gets_over"] for end in pair["ends"]].count(True) in (0, 2)  # it is no close call
+    assert [end["gets_over"] for end in pair["ends"]].count(True) in (0, 2)  # this is clear
     assert pair["apart"] < 1e-3 or pair["ends"][0]["gets_over"]
     table = parts([pair], {})["models"]
     assert "| line | 1 | 1 (21 to 100 %) |" in table
@@ -78,7 +78,7 @@ def test_cells_of_the_study_are_in_both_engines_with_the_same_draws(
     few = dataclasses.replace(FULL, heights={"step": (0.04, 0.15), "knife edge": (0.02,)})
     monkeypatch.setattr(study, "FULL", few)
     study.study(1, path)
-    study.study(1, path)  # nothing is left to do
+    study.study(1, path)  # nothing remains to do
     cells = [cell for part in read(path) for cell in part]
     assert [(cell["obstacle"], cell["height"]) for cell in cells] == [
         ("step", 0.04),

@@ -1,4 +1,4 @@
-"""benches/engines: cells are well formed, all engines get one robot, nothing runs unpredicted."""
+"""benches/engines: cells are valid, all engines get the same robot, and all runs are predicted."""
 
 import re
 from concurrent.futures import ThreadPoolExecutor
@@ -230,7 +230,7 @@ def test_the_jams_of_the_results_are_those_that_are_drawn() -> None:
     for model, jams in kept.items():
         label, _, stop, push = next(yaw.draw_jams(model))
         assert jams[0]["label"] == label
-        assert jams[0]["x"] == pytest.approx(stop.position[0], abs=1e-5)  # as it is rounded
+        assert jams[0]["x"] == pytest.approx(stop.position[0], abs=1e-5)  # up to its rounding
         assert jams[0]["push"] == pytest.approx(push, abs=1e-4)
         assert len({jam["label"] for jam in jams}) == len(jams) == 20
 
@@ -257,8 +257,8 @@ def test_an_engine_drives_robots_forward_at_their_speed(name: str) -> None:
         )
         found = drive(made, scenario)
         assert found["end"] == "timed out"
-        # 0.2 m/s, reached at 1 m/s^2: 0.08 m in half a second, less what wheels slip and grousers
-        # that roll on are slower than their circles.
+        # 0.2 m/s, reached at 1 m/s^2: 0.08 m in half a second, minus slip of wheels; grousers roll
+        # more slowly than their circles.
         assert found["x"] - scene_of(scenario).x == pytest.approx(0.08, abs=0.006), model
         assert max(found["yaw"], found["roll"], abs(found["angle"])) < 0.03, model
 
@@ -273,7 +273,7 @@ def test_ode_has_the_geometry_of_the_robot_and_pushes_it_up_no_farther_than_gaze
         assert start.place == pytest.approx([scene.x, 0.0, scene.z], abs=1e-12)
         assert start.turn == pytest.approx(np.eye(3), abs=1e-12)
         world.advance([0.0] * 500)
-        # Wheels sink by what their contacts give way: gravity for a step, less than 0.1 mm.
+        # Wheels penetrate by the compliance of contacts: gravity for a step, less than 0.1 mm.
         assert world.pose().place == pytest.approx([scene.x, 0.0, scene.z], abs=1e-4)
     finally:
         world.close()
@@ -306,7 +306,7 @@ def test_only_runs_that_stop_in_both_say_how_far_apart_stops_are() -> None:
 @pytest.mark.parametrize(
     "left_out",
     [
-        # Computed anew, for all cells of a file.
+        # Computed again, for all cells of a file.
         pytest.param("stops", id="but stops at jams"),
         pytest.param("", id="all", marks=pytest.mark.soak),
     ],

@@ -1,4 +1,4 @@
-"""benches/models: the ground is boxes, files are loaded as they were read, one rule judges all."""
+"""benches/models: the ground is boxes, files are loaded as read, and one rule judges all."""
 
 from dataclasses import replace
 from xml.etree import ElementTree
@@ -220,8 +220,8 @@ def test_an_engine_has_the_files_as_they_were_read_and_drives_them_forward(
         found = drive(runs.engine_of(engine), scenario, scene_of(scenario, model))
         assert found["end"] == "timed out"
         start = -scenario.start.approach - model.foremost
-        # Half the acceleration times the square of the time, less what the wheels slip until the
-        # robot has settled: 4.4 mm at most, but 11.9 mm of MARV's export in DART.
+        # Half the acceleration times the square of the time, minus slip until the robot settles: at
+        # most 4.4 mm, but 11.9 mm of MARV's export in DART.
         slip = 0.0125 if name == "marv" and engine.startswith("dart") else 0.006
         assert found["x"] - start == pytest.approx(0.045, abs=slip)
         assert max(found["yaw"], found["roll"], found["bend"]) < 0.01
@@ -232,7 +232,7 @@ def test_an_engine_has_the_files_as_they_were_read_and_drives_them_forward(
 def test_the_bodies_of_a_file_weigh_what_it_does_where_it_does(name: str) -> None:
     if CASES[name].file.endswith(".xacro"):
         pytest.importorskip("xacrodoc")
-    case = replace(CASES[name], angle=0.0)  # the centre of mass of a robot is that with level arms
+    case = replace(CASES[name], angle=0.0)  # a robot's centre of mass is that with level arms
     bodies = loaded(case.reading(), case.form, case.angle).bodies
     mass = sum(body["mass"] for body in bodies)
     centre = np.sum([body["mass"] * np.array(body["center"]) for body in bodies], axis=0) / mass

@@ -26,7 +26,7 @@ def test_the_chain_closes_round_both_ends(count: int) -> None:
     spans = np.hypot(*(np.roll(pins, -1, axis=0) - pins).T)
     assert len(pins) == count
     assert spans == pytest.approx(robot.pitch)
-    # Each shoe runs on from where the last ends: once round, counter-clockwise.
+    # Each shoe begins where the last ends: once round, counter-clockwise.
     angles = robot.shoes()[:, 2]
     turns = np.remainder(np.diff(angles, append=angles[0]) + 1e-9, 2.0 * np.pi)
     assert turns.sum() == pytest.approx(2.0 * np.pi)
@@ -51,7 +51,7 @@ def test_crawler2d_has_the_same_robot(count: int) -> None:
     built = scenario.robot
     assert built.mass == pytest.approx(19.96)
     assert built.track_mass == pytest.approx(robot.shoe_mass * count)
-    # Both sprockets together pull as the one motor does at the pins.
+    # Both sprockets together pull like the single motor at the pins.
     assert 2.0 * built.drivetrain.max_torque == chains.TORQUE
     state = Simulation(scenario).state()
     # A corner of the polygon may stand below the outline at first.

@@ -1,4 +1,4 @@
-"""benches/peers: a drawn scene follows the scenario it is made of, and the report the figures."""
+"""benches/peers: a drawn scene agrees with its scenario, and the report with the figures."""
 
 from pathlib import Path
 from typing import Any
@@ -29,7 +29,7 @@ def test_an_unchanged_scenario_is_the_scene_itself() -> None:
     same = of({})
     for own, before in zip(same.bodies, NOMINAL.bodies, strict=True):
         assert (own.x, own.y, own.mass) == (before.x, before.y, before.mass)
-        assert own.inertia == pytest.approx(before.inertia, rel=1e-9)  # as it is written
+        assert own.inertia == pytest.approx(before.inertia, rel=1e-9)  # as written
     assert same.joints == NOMINAL.joints
     assert same.friction == NOMINAL.friction
     assert all(map(np.array_equal, same.boxes, NOMINAL.boxes))

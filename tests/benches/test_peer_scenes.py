@@ -14,9 +14,9 @@ from crawler2d import _core
 from crawler2d.parameters.scenario import Scenario
 
 SCENARIOS = Path(__file__).parents[1] / "scenarios"
-# Both are written with all digits; what is left is the rounding of their generators.
+# Both are written with all digits; the rest is rounding of their generators.
 RELATIVE, ABSOLUTE = 1e-9, 1e-12
-# [m] Corners: the scenarios' grouser heights and thicknesses are rounded to as much.
+# [m] Corners: grouser heights and thicknesses in the scenarios are rounded to this.
 CORNER = 1e-9
 
 every_scene = pytest.mark.parametrize("name", SCENES)
@@ -32,13 +32,13 @@ def near(value: Any) -> Any:
 
 
 def by_place(points: Any) -> np.ndarray[Any, Any]:
-    """Sort points, shape (n, 2), by x and y; rounding must not part equal ones."""
+    """Sort points, shape (n, 2), by x and y, with equal ones adjacent despite rounding."""
     points = np.asarray(points, float)
     return np.asarray(points[np.lexsort(np.round(points, 9).T)])
 
 
 def left_wheels(scenario: Scenario) -> dict[str, np.ndarray[Any, Any]]:
-    """The wheels of one side; a scene's are those of both sides together."""
+    """The wheels of one side; those of a scene combine both sides."""
     wheels = scenario.robot.wheels()
     return {name: column[wheels["side"] == "left"] for name, column in wheels.items()}
 
@@ -163,7 +163,7 @@ def test_the_robot_starts_at_the_same_distance(name: str) -> None:
 
 
 def held(scene: Scene, *poses: tuple[float, float, float]) -> Motion:
-    """A motion of one sample: the first bodies in these poses, the rest where they start."""
+    """A motion of one sample: the first bodies in these poses, the rest at their start."""
     rest = [(body.x, body.y, body.angle) for body in scene.bodies[len(poses) :]]
     return Motion.of([0.0], [[*poses, *rest]])
 

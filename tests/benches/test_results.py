@@ -1,4 +1,4 @@
-"""The results that benches/ stores: what a table is made of, and how a run continues."""
+"""Stored results of benches/: contents of tables, and continuation of runs."""
 
 import lzma
 from concurrent.futures import ThreadPoolExecutor

@@ -16,7 +16,7 @@ from crawler2d.parameters.terrain import Points, Terrain
 from research.tables import splice
 
 POINTS = list(scenes.points())
-# A belt on more pieces takes seconds to get anywhere.
+# A belt on more pieces takes seconds.
 MOST = 1_000
 
 
@@ -62,7 +62,7 @@ def test_blocks_keep_their_shape_however_finely_cut() -> None:
 
 
 def result() -> dict[str, Any]:
-    """What a run would find if a second cost x ms, and one more for each panel before."""
+    """The result of a run if a second cost x ms, plus one for each panel before."""
     rows: list[dict[str, Any]] = []
     panels = list(scenes.panels(POINTS))
     for point in POINTS:

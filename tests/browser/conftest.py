@@ -27,7 +27,7 @@ def browser() -> Iterator[Browser]:
 
 @pytest.fixture
 def open_page(browser: Browser, tmp_path: Path) -> Iterator[Open]:
-    """Open a page from a file; afterwards no request and no complaint may have been seen."""
+    """Open a page from a file; it must make no request and report no error."""
     seen: list[str] = []
     pages: list[Page] = []
 

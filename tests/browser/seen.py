@@ -5,7 +5,7 @@ from collections.abc import Callable
 from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import Frame, Page
 
-# The pixels of a copy: a canvas that is read itself is drawn by other means from then on.
+# The pixels of a copy: reading a canvas itself changes how it is drawn from then on.
 PIXELS = """canvas => {
     const copy = new OffscreenCanvas(canvas.width, canvas.height);
     const context = copy.getContext("2d", { willReadFrequently: true });

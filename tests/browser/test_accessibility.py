@@ -1,4 +1,4 @@
-"""Pages keep the rules of WCAG 2.2 AA that axe can see, and the keyboard reaches every control."""
+"""Pages obey the rules of WCAG 2.2 AA that axe checks, and the keyboard reaches every control."""
 
 import pytest
 from playwright.sync_api import Page
@@ -20,7 +20,7 @@ def pages() -> dict[str, str]:
 
 
 def reached(page: Page) -> list[str]:
-    """Press Tab until the focus has gone round; return what had it, in that order."""
+    """Press Tab until the focus has gone round; return the focused elements in order."""
     found: list[str] = []
     for _ in range(STEPS):
         page.keyboard.press("Tab")

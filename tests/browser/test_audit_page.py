@@ -1,4 +1,4 @@
-"""The page of an audit in a real browser: it fits, begins with a replay, and that plays."""
+"""The page of an audit in a real browser: it fits, and begins with a replay that plays."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -22,7 +22,7 @@ def repaired() -> str:
 
 @pytest.fixture(scope="module")
 def hostile(tmp_path_factory: pytest.TempPathFactory) -> str:
-    """The page of a file in which everything that has a name has a hostile one."""
+    """The page of a file in which all names are hostile."""
     path = tmp_path_factory.mktemp("cart") / "cart <i>.urdf"
     path.write_text(seizing_file(NAME, NAME), encoding="utf-8")
     steps = {f"{HOSTILE}{each}": c2d.terrains.step(each) for each in (0.06, 0.075)}
@@ -30,7 +30,7 @@ def hostile(tmp_path_factory: pytest.TempPathFactory) -> str:
 
 
 def wide(place: str) -> str:
-    """Return what finds, in a page, what stands out of its place sideways and does not scroll."""
+    """Return a script that finds elements of a page that overflow sideways and do not scroll."""
     return f"""() => [...document.querySelectorAll("{place}")].filter(each =>
         each.scrollWidth > each.clientWidth + 1
         && getComputedStyle(each).overflowX === "visible").map(each => each.outerHTML)"""
@@ -50,8 +50,8 @@ def test_the_page_fits_every_width(
         page.eval_on_selector_all("details", "all => all.forEach(each => each.open = true)")
         page.evaluate(DRAWN)
         assert page.evaluate("document.documentElement.scrollWidth") <= width
-        # Nothing stands out of its place, but wide tables and texts, which scroll there, and an
-        # option that is too long, of which a select shows what fits.
+        # Nothing overflows except wide tables and texts, which scroll, and an option that is too
+        # long, of which a select shows what fits.
         assert page.evaluate(wide("main *:not(svg *, select, option)")) == []
         boxes = page.eval_on_selector_all(
             "svg, select, canvas:not([hidden] *), .scroll, pre",

@@ -1,4 +1,4 @@
-"""The page of a run in a real browser: it opens, plays, and does what its controls say."""
+"""The page of a run in a real browser: it opens and plays, and its controls work."""
 
 import json
 import re
@@ -69,7 +69,7 @@ def test_the_page_shows_robot_and_strip(open_page: Open, name: str, scheme: str)
     assert page.eval_on_selector("#scene", COLOURS) > 20
     assert page.eval_on_selector("#strip", COLOURS) > 10
     assert clock(page) == 1.0
-    # What moves is seen to move.
+    # Moving bodies are drawn moving.
     before = checksum(page)
     page.keyboard.press("ArrowRight")
     assert checksum(page) != before
@@ -202,7 +202,7 @@ def test_keys_work_once_where_a_control_has_the_focus(open_page: Open, stopped: 
 
 
 def frames_of_fills(page: Page) -> list[Any]:
-    """Frames in that of the world, of all that the page fills one sample later, shape (2, 3)."""
+    """World frames of everything that the page fills one sample later, shape (2, 3)."""
     page.evaluate(FILLS)
     page.keyboard.press("ArrowRight")
     page.evaluate(DRAWN)
@@ -217,7 +217,7 @@ def frames_of_fills(page: Page) -> list[Any]:
 
 
 def has_frame(frames: list[Any], place: Any, angle: float) -> bool:
-    """Whether one of some frames is at a place [m] and angle [rad], to 0.1 mm and 1 mrad."""
+    """Whether one of the frames is at a position [m] and angle [rad], to 0.1 mm and 1 mrad."""
     turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
     pose = np.column_stack([turn, place])
     nearest = min((np.abs(pose - frame) for frame in frames), key=lambda miss: float(miss.max()))
@@ -229,7 +229,7 @@ def test_a_chain_and_its_wheels_lie_where_the_run_has_them(open_page: Open, name
     run = simulated(name)
     sample = 170  # the front is on the step
     frames = frames_of_fills(open_page(run.to_html(time=run.time[sample - 1])))
-    for *place, angle in run.shoe_poses[sample, -22:]:  # of two tracks the right one is in front
+    for *place, angle in run.shoe_poses[sample, -22:]:  # the right one of two tracks is in front
         assert has_frame(frames, place, angle)
     scene = scene_of(run)
     for row in scene.carriers[0].bodies:
@@ -369,7 +369,7 @@ TEXTS = """() => {
 
 
 def test_the_deepest_edge_is_named_by_its_own_wheels(open_page: Open, stopped: c2d.Run) -> None:
-    """Another edge that came inside later lies between wheels of its own."""
+    """Another edge that came inside later lies between other wheels."""
     before, events, rest = re.split(r'(?<="events":)(\[.*?\])(?=,"ground")', stopped.to_html())
     later = {"kind": "intrusion", "start": 0.0, "end": stopped.time[-1], "carrier": 0}
     found = json.loads(events)

@@ -1,4 +1,4 @@
-"""The widget of a replay in a real browser, with a model as a notebook has one."""
+"""The widget of a replay in a real browser, with a model like that of a notebook."""
 
 import json
 from typing import Any

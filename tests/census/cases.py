@@ -1,4 +1,4 @@
-"""Runs of a census without their histories, and what has to hold for them."""
+"""Runs of a census without their histories, and conditions that they must satisfy."""
 
 import collections
 import itertools
@@ -40,7 +40,7 @@ class Case:
 
     @property
     def opinions(self) -> tuple[str, str]:
-        """What core and judge say, where there is a stop."""
+        """The opinions of core and judge on a stop."""
         assert self.diagnosis is not None
         assert self.opinion is not None
         return (
@@ -50,7 +50,7 @@ class Case:
 
     @property
     def is_hard(self) -> bool:
-        """Somebody sees loaded ground inside the track."""
+        """Whether core or judge find loaded ground inside the track."""
         assert self.diagnosis is not None
         assert self.opinion is not None
         return self.diagnosis.mechanism is not None or self.opinion.mechanism is not None
@@ -61,12 +61,12 @@ def _view(symptom: str, of: Diagnosis | Opinion) -> str:
 
 
 def cases(strata: Strata, sizes: dict[str, int], share: int) -> Iterable[Case]:
-    """Every case of strata of these sizes, or as many of it as a share."""
+    """All cases of strata of these sizes, or a fraction of them."""
     for stratum, size in sizes.items():
         scenarios = drawn(stratum, -(-size // share), strata=strata)
         index = itertools.count()
         while batch := list(itertools.islice(scenarios, AT_A_TIME)):
-            # One that fails is shown by its test, after all others have been looked at.
+            # A failing one is reported by its test, after all others.
             for run in c2d.simulate_many(batch, threads=2, on_error="record"):
                 yield case(stratum, next(index), run)
 
@@ -92,13 +92,13 @@ def case(stratum: str, index: int, run: c2d.Run) -> Case:
 
 
 def name_of(track: Any) -> str:
-    """The model of a track, with the shape of its wheels or what carries it."""
+    """The model of a track, with the shape of its wheels or its support."""
     shape = getattr(getattr(track, "wheel", None), "kind", getattr(track, "support", ""))
     return f"{track.kind} {getattr(track, 'mechanism', shape)}".strip()
 
 
 def family(names: list[str]) -> str:
-    """Which of the names decides how contacts are: chains and gears go on as they rattle."""
+    """The part of the name that decides the kind of contacts: chains and gears rattle."""
     said = " ".join(names)
     for word, found in (
         ("segmental", "chains"),
@@ -119,7 +119,7 @@ def second_opinion(run: c2d.Run) -> Opinion:
 
 
 def stopped(census: list[Case]) -> list[Case]:
-    """The cases that stood still or went to and fro at their end, temporarily or not."""
+    """The cases that stood still or moved to and fro at their end, temporarily or not."""
     return [case for case in census if case.diagnosis is not None]
 
 
@@ -150,7 +150,7 @@ def faults_of_fields(census: list[Case]) -> list[str]:
 
 
 def rules_of(d: Diagnosis) -> dict[str, bool]:
-    """What has to hold in a diagnosis, and whether it does."""
+    """Conditions that a diagnosis must satisfy, and whether it does."""
     criteria = c2d.SeizureCriteria()
     allowed = criteria.imbalance if d.stationary else criteria.mean_imbalance
     shares = (d.belly_share, d.sliding_share, d.stalled_share)
@@ -181,7 +181,7 @@ def rules_of(d: Diagnosis) -> dict[str, bool]:
 
 
 def certificates(census: list[Case]) -> tuple[list[str], dict[str, float]]:
-    """A table of imbalances, and for families at rest the share that is within the criteria."""
+    """A table of imbalances, and for families at rest the fraction within the criteria."""
     families: dict[tuple[str, bool], list[float]] = collections.defaultdict(list)
     for case in stopped(census):
         d = case.diagnosis
@@ -203,12 +203,12 @@ def certificates(census: list[Case]) -> tuple[list[str], dict[str, float]]:
 
 
 def apart(census: list[Case]) -> list[Case]:
-    """The stops that core and judge call by different names."""
+    """The stops for which core and judge have different names."""
     return [case for case in stopped(census) if case.opinions[0] != case.opinions[1]]
 
 
 def disagreements(census: list[Case]) -> list[str]:
-    """Each of them with its figures, and how many there are."""
+    """Each of them with its figures, and their number."""
     hard = [case for case in stopped(census) if case.is_hard]
     hard_apart = [case for case in apart(census) if case.is_hard]
     lines = []

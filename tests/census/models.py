@@ -182,7 +182,7 @@ def of_few_road_wheels(rng: Generator) -> Scenario:
 
 
 def of_arms_held(rng: Generator) -> Scenario:
-    """At the angle that they start with."""
+    """Arms held at their initial angle."""
     model = armed(rng)
     assert model.flippers is not None
     drive = c2d.Drive(
@@ -197,7 +197,7 @@ def of_arms_climbing(rng: Generator) -> Scenario:
 
 
 def of_pockets_of_arms(rng: Generator) -> Scenario:
-    """Arms of few wheels laid on the ground, so that edges get in between these."""
+    """Arms with few wheels on the ground, so that edges get between them."""
     arms = c2d.LineOfWheels(
         int(rng.integers(2, 4)), wheel_radius=float(rng.uniform(0.02, 0.037)), wheel=wheel(rng)
     )
@@ -214,7 +214,7 @@ def of_pockets_of_arms(rng: Generator) -> Scenario:
 def of_lanes(rng: Generator) -> Scenario:
     """Wheels, belts and gears as in the other census."""
     track = any_track(rng)
-    while track.kind == "force":  # it has no sides
+    while track.kind == "force":  # it is not lateral
         track = any_track(rng)
     return brief(rng, robot(rng, track), lanes(rng))
 
@@ -233,7 +233,7 @@ def of_arms_on_lanes(rng: Generator) -> Scenario:
 
 
 def of_gear_arms(rng: Generator) -> Scenario:
-    """Grousers of arms that hook in."""
+    """Grousers of arms that hook into the ground."""
     arms = c2d.LineOfWheels(int(rng.integers(2, 5)), wheel=gear(rng))
     track = line(rng, gear(rng))
     model = with_arms(rng, robot(rng, track, torque=(0.5, 8.0), bellyless=0.6), arms)
@@ -241,11 +241,11 @@ def of_gear_arms(rng: Generator) -> Scenario:
 
 
 def brief(rng: Generator, model: c2d.Robot, terrain: Any, **fields: Any) -> Scenario:
-    """A scenario that lasts until a stop is sure."""
+    """A scenario that lasts until a stop is certain."""
     drawn = scenario(rng, model, terrain, **fields)
     if "duration" in fields:
         return drawn
-    # A slow robot has a longer way to go.
+    # A slow robot needs more time.
     slow = min(0.3 / abs(drawn.drive.speed), 2.0)
     return dataclasses.replace(drawn, duration=math.ceil(4.0 + 3.0 * slow))
 

@@ -260,7 +260,7 @@ def of_little_grip(rng: Generator) -> Scenario:
 
 
 def of_smooth_tracks(rng: Generator) -> Scenario:
-    """Belts, skids, free wheels: nothing that lets an edge in, or nothing that turns it."""
+    """Belts, skids and free wheels, into which no edge gets, or which do not turn."""
     track = c2d.BeltTrack() if rng.random() < 0.4 else force(rng)
     return scenario(rng, robot(rng, track, clearance=(-0.01, 0.06)), ground(rng))
 

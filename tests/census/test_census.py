@@ -1,4 +1,4 @@
-"""Thousands of stops of every kind, each judged a second time by other means."""
+"""Thousands of stops of every kind, each judged independently."""
 
 import collections
 from collections.abc import Callable

@@ -1,4 +1,4 @@
-"""More than a thousand stops of grousers, chains, flippers and lanes, each judged a second time."""
+"""Over a thousand stops of grousers, chains, flippers and lanes, each judged independently."""
 
 import collections
 from collections.abc import Callable
@@ -112,5 +112,5 @@ def test_the_census_holds_every_kind(census: list[Case], say: Callable[[str], No
     outcomes = {case.outcome for case in stops}
     mechanisms = {case.diagnosis.mechanism for case in stops if case.diagnosis is not None}
     kinds = {Outcome.SEIZED, Outcome.HUNG_UP, Outcome.STALLED, Outcome.SLIPPING, Outcome.CYCLING}
-    assert outcomes - {Outcome.TIMED_OUT} == kinds  # that of stops that would not have lasted
+    assert outcomes - {Outcome.TIMED_OUT} == kinds  # the value for stops that would not have lasted
     assert mechanisms == {None, *Mechanism}

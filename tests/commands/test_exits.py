@@ -1,4 +1,4 @@
-"""How commands end: after Ctrl-C, in a pipe that is closed, and with which status."""
+"""Exit of commands: status, after Ctrl-C, and with a closed pipe."""
 
 import os
 import signal
@@ -47,7 +47,7 @@ def interrupted(process: subprocess.Popen[str], text: str) -> tuple[int, str, st
 
 @pytest.mark.parametrize("command", ["run", "view"])
 def test_ctrl_c_ends_a_simulation_in_one_line(tmp_path: Path, command: str) -> None:
-    """It reads its file from a pipe: once that is read, it is not importing any more."""
+    """It reads its file from a pipe; once this is read, imports are finished."""
     text = LONG.to_json()
     with started(tmp_path, command, "-") as process:
         status, out, err = interrupted(process, f"{text}{' ' * 200_000}")

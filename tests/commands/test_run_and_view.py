@@ -36,7 +36,7 @@ def ran(capsys: pytest.CaptureFixture[str]) -> Ran:
 
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A folder that we are in, with scenarios of two runs."""
+    """The working directory, with scenarios of two runs."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "clears.json").write_text(CLEARS.to_json())
     (tmp_path / "seizes now.json").write_text(SEIZES.to_json(indent=2))
@@ -142,7 +142,7 @@ def test_a_saved_run_may_come_from_the_standard_input(
 
 
 def write_bad_files(folder: Path) -> None:
-    """Write files that are no scenarios, or no good ones."""
+    """Write files that are not scenarios, or invalid ones."""
     (folder / "folder.json").mkdir()
     text = CLEARS.to_json()
     c2d.simulate(CLEARS, record="summary").save(folder / "summary.npz")
@@ -224,7 +224,7 @@ def test_a_file_that_cannot_be_written_is_named(ran: Ran, monkeypatch: pytest.Mo
     monkeypatch.setattr("crawler2d.common.files.Path.replace", full)
     status, out, err = ran("run", "clears.json", "--html", "page.html")
     assert status == 2
-    assert out.splitlines()[0] == c2d.simulate(CLEARS).title  # what it found is not lost
+    assert out.splitlines()[0] == c2d.simulate(CLEARS).title  # its results are not lost
     assert err.splitlines() == ["crawler2d run: page.html: No space left on device"]
     assert not list(Path().glob("*.html"))
     assert not list(Path().glob(".*"))

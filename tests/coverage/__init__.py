@@ -1,1 +1,1 @@
-"""What tests execute of package and core: `make coverage`."""
+"""Coverage of package and core by tests: `make coverage`."""

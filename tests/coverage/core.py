@@ -21,7 +21,7 @@ CORE = ROOT / "rust_core/src"
 OUT = ROOT / "out/coverage-rust.txt"
 BUILT = Path(os.environ.get("CARGO_TARGET_DIR", "target")).resolve() / "coverage"
 
-# In a debug build the facts take hours. One unit takes twice the time to build.
+# In a debug build, the facts take hours. One codegen unit takes twice the time to build.
 BUILD = {
     "CARGO_TARGET_DIR": str(BUILT),
     "CARGO_PROFILE_RELEASE_CODEGEN_UNITS": "16",
@@ -65,7 +65,7 @@ def tests() -> list[Path]:
 
 
 def counted(test: Path, raw: Path) -> Hits:
-    """Return how often the lines of the core ran in one program."""
+    """Return how often each line of the core ran in one program."""
     cov = Path(sys.executable).parent / "cov"
     command: list[str | Path] = [cov, "show", "--instr-profile", raw, "--object", test]
     shown = subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True)
@@ -90,7 +90,7 @@ def is_of_tests(file: Path) -> bool:
 
 
 def first_line_of_tests(file: Path) -> int:
-    """Return where the tests in a file begin: after all else."""
+    """Return the line where the tests in a file begin, which are at its end."""
     text = file.read_text(encoding="utf-8")
     found = re.search(r"^#\[cfg\(test\)\]\nmod \w+ \{", text, re.MULTILINE)
     return text.count("\n", 0, found.start() if found else len(text)) + 1

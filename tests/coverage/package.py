@@ -31,7 +31,7 @@ def is_error(node: Any) -> TypeGuard[ast.stmt]:
 
 
 def main(report: Path) -> None:
-    """Print lines and branches by room, and what raises but is never executed."""
+    """Print lines and branches by room, and statements that raise but are never executed."""
     files = json.loads(report.read_text(encoding="utf-8"))["files"]
     rooms: dict[str, list[int]] = defaultdict(lambda: [0, 0, 0, 0])
     errors: list[str] = []

@@ -1,4 +1,4 @@
-"""What this process holds of the system: memory, descriptors, threads."""
+"""Resources of this process: memory, descriptors, threads."""
 
 import gc
 import os
@@ -29,7 +29,7 @@ def held() -> Held:
 
 
 def _threads() -> int:
-    """How many there are; one that was joined stays in the list until the system has ended it."""
+    """Return their number; a joined thread stays in the list until the system has ended it."""
     found = []
     for _ in range(5):
         found.append(len(os.listdir("/proc/self/task")))
@@ -38,7 +38,7 @@ def _threads() -> int:
 
 
 def check_flat(before: Held, after: Held, megabytes: float) -> str:
-    """What has grown, in words; fails if it is more than so much memory, or anything else."""
+    """Describe growth; fail if memory grew by more than a limit, or anything else grew."""
     assert after.descriptors <= before.descriptors, (before, after)
     assert after.threads <= before.threads, (before, after, threading.enumerate())
     assert after.megabytes - before.megabytes < megabytes, (before, after)

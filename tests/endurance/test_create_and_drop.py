@@ -87,9 +87,9 @@ KINDS = {
 
 
 def check(kind: str, cycles: int, megabytes: float, folder: Path, say: Say) -> None:
-    """Memory may grow by so much: 2 MB in ten thousand cycles are two hundred bytes in each."""
+    """Check the growth of memory: 2 MB in ten thousand cycles are two hundred bytes in each."""
     once = KINDS[kind]
-    for number in range(max(10, cycles // 10)):  # what is allocated once, and what fragments
+    for number in range(max(10, cycles // 10)):  # one-time allocations and fragmentation
         once(number, folder)
     before = held()
     for number in range(cycles):

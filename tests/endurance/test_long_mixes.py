@@ -1,4 +1,4 @@
-"""An hour of driving over mixed scenes: nothing comes apart, sinks in, runs away or grows."""
+"""An hour of driving over mixed scenes: nothing comes apart, penetrates, diverges or grows."""
 
 import os
 import random
@@ -24,13 +24,13 @@ pytestmark = [
 
 
 def check(seconds: float, say: Say, grounds: Iterable[str] = ()) -> None:
-    """Drive so long in every scene, or in those on some grounds."""
+    """Drive for a time in every scene, or in those on certain grounds."""
     chosen = {
         place: scenario
         for place, scenario in scenes(SEED).items()
         if not grounds or place[1] in grounds
     }
-    for place, scenario in chosen.items():  # what is allocated once
+    for place, scenario in chosen.items():  # one-time allocations
         driven(str(place), scenario, min(seconds, 20.0), random.Random(0))
     before, begin = held(), time.monotonic()
     by_model: dict[str, Seen] = defaultdict(Seen)

@@ -1,4 +1,4 @@
-"""Sixteen threads, on objects of their own and on shared ones: the bits of one, and no hang."""
+"""Sixteen threads with own and shared objects: the same bits as with one, and no hang."""
 
 import os
 import subprocess
@@ -27,7 +27,7 @@ NAMES = ("belt-step", "gears-diagonal-barrier", "force-ramp", "segmental-step", 
 
 
 def together(work: Callable[[int], Any], count: int = THREADS) -> list[Any]:
-    """Call in so many threads that begin at once."""
+    """Call a function in several threads that start at the same time."""
     gate = threading.Barrier(count)
 
     def begin(number: int) -> Any:
@@ -39,7 +39,7 @@ def together(work: Callable[[int], Any], count: int = THREADS) -> list[Any]:
 
 
 def alone(number: int, pieces: int) -> bytes:
-    """All that a simulation of one's own comes to, with commands on the way."""
+    """The results of a simulation in one thread, with commands during it."""
     sim = c2d.Simulation(VARIANTS[NAMES[number % len(NAMES)]])
     for piece in range(pieces):
         sim.command(speed=0.05 * (1 + (number + piece) % 5))
@@ -77,7 +77,7 @@ def check_shared(pieces: int) -> None:
                 c2d.Simulation.from_snapshot(shared.snapshot()).advance(PIECE)
 
     together(work)
-    # Whatever the order was, it is in its log: made again alone it comes to the same bits.
+    # Its log has the actual order: repeated alone, it gives the same bits.
     run = shared.to_run()
     assert run.time[-1] == shared.time == PIECE * THREADS * pieces / 4
     assert (run.position[-1] == shared.state().position).all()
@@ -156,7 +156,7 @@ class Enough(Exception):
 def test_exceptions_of_callbacks_propagate_in_each_thread() -> None:
     def work(number: int) -> str:
         def progress(done: int, _: int) -> None:
-            # What is finished together is told together, so that a count may be skipped.
+            # Runs that finish together are reported together, so a count may be skipped.
             if done > number % 3:
                 raise Enough(str(number))
 

@@ -1,4 +1,4 @@
-"""Quantities watched during endless driving: numbers, pins, overlap with ground, speeds."""
+"""Quantities monitored during endless driving: numbers, pins, overlap with ground, speeds."""
 
 import math
 import random
@@ -35,8 +35,8 @@ class Seen:
     seconds: float = 0.0
     pin_gap: float = 0.0  # [m]
     overlap: float = 0.0  # [m] by our own geometry
-    penetration: float = 0.0  # [m] as the table of contacts has it
-    speed: float = 0.0  # [-] of the tracks, in commanded ones
+    penetration: float = 0.0  # [m] in the table of contacts
+    speed: float = 0.0  # [-] speed of the tracks, relative to the command
     outcomes: Counter[str] = field(default_factory=Counter)
     faults: list[str] = field(default_factory=list)
 
@@ -48,7 +48,7 @@ class Seen:
         self.faults += other.faults
 
     def judge(self, case: str) -> None:
-        """Note values beyond their bounds."""
+        """Record values beyond their bounds."""
         bounds = {"pin_gap": 0.5e-3, "overlap": 2e-3, "penetration": 2e-3, "speed": 3.0}
         for name, bound in bounds.items():
             if (worst := getattr(self, name)) > bound:
@@ -80,14 +80,14 @@ class Ground:
         self.profile = profile
 
     def near(self, low: float, high: float) -> Array:
-        """The part of it between two places, and a little more."""
+        """The part between two positions, and a little more."""
         x = self.profile[:, 0]
         first = max(int(np.searchsorted(x, low)) - 1, 0)
         last = int(np.searchsorted(x, high, side="right")) + 1
         return self.profile[first:last]
 
     def overlap_of_discs(self, centers: Array, radii: Array) -> float:
-        """[m] Depth of the deepest of some discs."""
+        """[m] Depth of the deepest disc."""
         reach = radii.max()
         part = self.near(centers[:, 0].min() - reach, centers[:, 0].max() + reach)
         distance = off(centers, part)
@@ -95,7 +95,7 @@ class Ground:
         return float((radii + np.where(under, distance, -distance)).max())
 
     def overlap_of_polygons(self, polygons: Array) -> float:
-        """[m] Depth of the deepest of some convex polygons, shape (n, corners, 2)."""
+        """[m] Depth of the deepest convex polygon, shape (n, corners, 2)."""
         x = polygons[..., 0]
         part = self.near(x.min(), x.max())
         corners = polygons.reshape(-1, 2)
@@ -127,7 +127,7 @@ class Side:
         ]
 
     def overlap(self, pose: Array) -> float:
-        """[m] How deep its deepest body is in the ground."""
+        """[m] Depth of its deepest body in the ground."""
         worst = 0.0
         if len(self.discs):
             worst = self.ground.overlap_of_discs(pose[self.discs, :2], self.radii)
@@ -153,7 +153,7 @@ class Robot:
         self.chains = 1 if len(self.sides) == 1 else 2
 
     def overlap(self, states: list[State]) -> float:
-        """[m] How deep its deepest body is in the ground at some instants."""
+        """[m] Depth of its deepest body in the ground at several instants."""
         trace = {name: np.array([getattr(each, name) for each in states]) for name in POSE_COLUMNS}
         trace["time"] = np.array([each.time for each in states])
         poses = _core.poses(self.text, trace)["bodies"]
@@ -170,7 +170,7 @@ def _cross(one: Array, other: Array) -> Array:
 
 
 def pieces(outline: Array) -> Iterator[Array]:
-    """A convex outline anticlockwise; one that is not, such as that of a gear, by its triangles."""
+    """A convex outline anticlockwise; others, such as that of a gear, as triangles."""
     after = np.roll(outline, -1, axis=0) - outline
     turns = _cross(after, np.roll(after, -1, axis=0))
     area = _cross(outline, np.roll(outline, -1, axis=0)).sum()
@@ -184,7 +184,7 @@ def pieces(outline: Array) -> Iterator[Array]:
 
 
 def pitch_of(poses: Array) -> float:
-    """[m] Distance of the pins: that with which the chain closes best."""
+    """[m] Distance of the pins, with which the chain closes best."""
     along = np.column_stack([np.cos(poses[:, 2]), np.sin(poses[:, 2])])
     between = np.roll(poses[:, :2], -1, axis=0) - poses[:, :2]
     halves = 0.5 * (along + np.roll(along, -1, axis=0))
@@ -192,7 +192,7 @@ def pitch_of(poses: Array) -> float:
 
 
 def pin_gap(poses: Array, pitch: float) -> float:
-    """[m] Largest distance of the ends of two shoes that a pin holds together."""
+    """[m] Largest distance of the ends of two shoes with a common pin."""
     along = 0.5 * pitch * np.column_stack([np.cos(poses[:, 2]), np.sin(poses[:, 2])])
     gaps = np.roll(poses[:, :2] - along, -1, axis=0) - (poses[:, :2] + along)
     return float(np.hypot(*gaps.T).max())

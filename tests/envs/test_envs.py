@@ -1,4 +1,4 @@
-"""The environments of Gymnasium: by its own checks, alone and side by side."""
+"""The environments for Gymnasium, with its own checks, single and in vectors."""
 
 import dataclasses
 import pickle
@@ -85,7 +85,7 @@ def copies(count: int, **options: Any) -> SyncVectorEnv:
 
 
 def assert_same(one: Any, other: Any) -> None:
-    """Compare what `step` or `reset` returned, with all that Gymnasium adds to it."""
+    """Compare results of `step` or `reset`, including everything that Gymnasium adds."""
     if isinstance(one, dict):
         assert one.keys() == other.keys()
         for key in one:
@@ -118,7 +118,7 @@ def test_many_are_bit_by_bit_and_key_by_key_what_gymnasium_makes_of_single_ones(
         found = ours.step(action)
         assert_same(found, theirs.step(action))
         ended += int((found[2] | found[3]).sum())
-    assert ended >= 5  # each has seen an end and what follows
+    assert ended >= 5  # each has had an end and a new start
 
 
 def test_a_mask_resets_some_episodes() -> None:
@@ -188,7 +188,7 @@ def test_rewards_are_the_sum_of_their_terms_and_progress_ends_at_the_goal() -> N
     assert info["outcome"] == "cleared"
     assert sums["progress"] == pytest.approx(far, abs=1e-9)
     assert sums["ending"] == 1.0
-    # What the motors did is in the run, too, and must have lifted the robot by the step at least.
+    # The work of the motors is in the run, too, and must be enough to lift the robot by the step.
     work = env.run.metrics["drive_work"]
     robot = WHEELED.robot
     assert sums["effort"] == pytest.approx(-0.5 * work / (robot.mass * 9.81), rel=1e-9)

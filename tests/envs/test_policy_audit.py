@@ -23,7 +23,7 @@ VARIED = c2d.variability.of_start()
 
 
 def holding(seen: NDArray[np.float32]) -> NDArray[np.float64]:
-    """Drive on with the flippers where they are at the start."""
+    """Drive on with the flippers at their initial angles."""
     return np.tile([1.0, START / np.pi, START / np.pi], (len(seen), 1))
 
 
@@ -173,7 +173,7 @@ def test_a_policy_of_the_wrong_shape_is_refused() -> None:
 
 def test_rows_of_episodes_that_have_ended_do_not_matter() -> None:
     def undefined_when_over(seen: Any) -> Any:
-        # What is observed of an episode that has ended does not change any more.
+        # The observation of a finished episode does not change any more.
         over = (seen == last[-1]).all(axis=1) if last else np.zeros(len(seen), bool)
         last.append(seen.copy())
         return np.where(over[:, None], np.nan, climbing(seen))

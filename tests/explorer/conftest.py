@@ -13,7 +13,7 @@ from tests.browser.seen import Open
 
 __all__ = ["browser", "open_page"]
 
-# A name for what tests use of the page's scripts.
+# A name for the parts of the page's scripts that tests use.
 _EXPOSED = """
 window.explored = { get views() { return views; }, Sentence, tables, requested };
 """
@@ -56,7 +56,7 @@ def page(open_page: Open, html: str) -> Page:
 
 @pytest.fixture(scope="module")
 def asked(browser: Browser, html: str, tmp_path_factory: pytest.TempPathFactory) -> Page:
-    """One page for many questions."""
+    """One page for many requests."""
     path = tmp_path_factory.mktemp("explorer") / "explorer.html"
     path.write_text(html, encoding="utf-8")
     page = browser.new_page()

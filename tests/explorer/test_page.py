@@ -24,7 +24,7 @@ def part(page: Page, which: str, number: int = 1) -> str:
 
 
 def state(page: Page) -> Scenario:
-    """Read the scenario that the page hands out."""
+    """Read the scenario that the page offers to copy."""
     page.click("#copy-json")
     return Scenario.from_json(page.input_value("#copied"))
 
@@ -144,7 +144,7 @@ def test_a_run_that_waits_for_a_slow_one_is_not_pushed_aside_by_trials(page: Pag
 
 
 def test_both_pictures_show_all_of_another_obstacle(page: Page) -> None:
-    """A list tells at once of a change and of its end, long before the run is there."""
+    """A list reports a change and its end at once, long before the run has finished."""
     page.select_option("[id='field-terrain.kind']", "stairs")
     settled(page)
     views = page.evaluate(
@@ -218,7 +218,7 @@ def test_a_broken_rule_is_named(page: Page) -> None:
     page.evaluate(
         "location.hash = 'robot.track.kind=circumferential&robot.track.wheel_radius=0.09'"
     )
-    # A function: the page lets no text be evaluated, which waiting for one does again and again.
+    # A function, because the page forbids evaluating text, which waiting for an expression does.
     page.wait_for_function(
         "() => document.querySelector('.ending').textContent === 'not simulated'"
     )

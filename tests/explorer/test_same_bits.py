@@ -77,7 +77,7 @@ def test_the_page_draws_what_a_replay_draws(asked: Page, name: str) -> None:
 
 
 def plain(drawing: Any) -> Any:
-    """Put the values of columns and outlines where they are referred to."""
+    """Replace references to columns and outlines by their values."""
     robot = drawing["robot"]
     columns, outlines = (
         [unpacked(each) for each in robot.pop(name)] for name in ("columns", "outlines")
@@ -114,7 +114,7 @@ def unpacked(item: Any) -> np.ndarray[Any, Any]:
 
 
 def compare(path: str, shown: Any, expected: Any, within: Mapping[str, float]) -> None:
-    """Compare all of two drawings: names exactly, numbers within what a replay rounds them to."""
+    """Compare two drawings: names exactly, numbers within the rounding of a replay."""
     if isinstance(expected, dict):
         assert shown.keys() == expected.keys(), path
         for name in expected:
@@ -131,7 +131,7 @@ def compare(path: str, shown: Any, expected: Any, within: Mapping[str, float]) -
 
 
 def rounding(contacts: Any) -> dict[str, float]:
-    """Return by how much a replay may round what it draws, where that is more than 0.2 mm."""
+    """Return the rounding of a replay, where it is more than 0.2 mm."""
     force, speed = (1e-2 * contacts[name] for name in ("usual_force", "usual_speed"))
     forces = dict.fromkeys(("normal_force", "friction_force"), force)
     # The rim of the smallest wheel, 15 mm, moves by 0.1 mm as it turns by this.

@@ -1,4 +1,4 @@
-"""Let a system call of a process fail that writes, opens or renames. Linux on x86-64 alone."""
+"""Make a system call that writes, opens or renames fail. Only on Linux on x86-64."""
 
 import ctypes
 import os
@@ -48,7 +48,7 @@ class _Registers(ctypes.Structure):
 
 
 class Ending(IntEnum):
-    """How work ended: its own word, or that it was broken off."""
+    """How work ended: its own result, or that it was interrupted."""
 
     DONE = 0
     REFUSED = 3
@@ -61,7 +61,7 @@ class Ending(IntEnum):
 
 @dataclass(frozen=True)
 class Fault:
-    """What was done to the process: the call that failed, "" if there were fewer, and the end."""
+    """The call that failed, "" if there were fewer, and how the work ended."""
 
     call: str
     ending: Ending

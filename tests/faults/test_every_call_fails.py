@@ -1,4 +1,4 @@
-"""A system call that fails while a file is written leaves the old file or the new one."""
+"""A system call that fails while a file is written leaves either the old file or the new one."""
 
 import errno
 import platform
@@ -36,7 +36,7 @@ each_fault = pytest.mark.parametrize("fault", FAULTS)
 
 
 def ways(work: Work, fault: str, every: int, check: Callable[[Ending], None]) -> list[str]:
-    """Do some work with a fault at every so-many-th call, and check what it leaves.
+    """Do some work with a fault at every n-th call, and check the files that it leaves.
 
     The first and the last ones all fail: a text is written in half a dozen, and what is complete
     takes its place at the end. Returns the calls that failed.
@@ -79,7 +79,7 @@ WRITERS: dict[str, Callable[[Path], object]] = {
 @every_one
 @pytest.mark.parametrize(
     "name",
-    # A film is drawn anew for each of its calls.
+    # A film is drawn again for each of its calls.
     [pytest.param(n, marks=pytest.mark.soak if n == "film.gif" else ()) for n in WRITERS],
 )
 def test_a_file_is_the_old_one_or_the_new_one(
@@ -94,7 +94,7 @@ def test_a_file_is_the_old_one_or_the_new_one(
         found = place.read_bytes()
         assert found in (old, new)
         assert found == new or ending is Ending.REFUSED
-        # Nothing is left beside it, unless removing it was what failed.
+        # No other file remains, unless its removal failed.
         assert len(list(tmp_path.iterdir())) <= 1 + (ending is Ending.REFUSED)
         for other in tmp_path.iterdir():
             other.unlink()

@@ -22,7 +22,7 @@ def cases(name: str, usual: int) -> int:
 
 
 class Account:
-    """What came out of many cases, and what of it must not: counted by its kind, with examples."""
+    """Results of many cases, and those that must not occur: counted by kind, with examples."""
 
     EXAMPLES = 3
 

@@ -44,14 +44,14 @@ _STEP = re.compile(r"([^.\[\]]+)|\[(\d+)\]")
 
 
 def read(tree: Json, path: str) -> Json:
-    """What is at a path; KeyError, IndexError or TypeError if nothing is."""
+    """The value at a path; KeyError, IndexError or TypeError if there is none."""
     for name, index in _STEP.findall(path):
         tree = tree[name] if name else tree[int(index)]
     return tree
 
 
 def write(tree: Json, path: str, value: Json) -> bool:
-    """Set what is at a path; False if there is no such place."""
+    """Set the value at a path; False if there is no such path."""
     *parents, (name, index) = _STEP.findall(path)
     try:
         for step, number in parents:
@@ -98,7 +98,7 @@ def near(draw: random.Random, limit: float) -> Json:
 
 
 def resized(draw: random.Random, value: Json, limit: float) -> Json:
-    """A list or a text of about so many entries."""
+    """A list or a text with about a given number of entries."""
     count = max(0, int(limit) + draw.choice((-1, 0, 0, 1)))
     if isinstance(value, str):
         return "n" * count
@@ -124,7 +124,7 @@ class Base:
 
 
 class Borders:
-    """Draws scenarios, from the same seed the same ones."""
+    """Draws scenarios, the same for the same seed."""
 
     def __init__(self, more: list[Json]) -> None:
         trees = [*(json.loads(scenario.to_json()) for scenario in VARIANTS.values()), *more]
@@ -137,7 +137,7 @@ class Borders:
         self.rules = sorted(self.by_rule)
 
     def draw(self, draw: random.Random) -> Json:
-        """One scenario, as plain data of JSON: what is not finite is a text."""
+        """One scenario as JSON data, with non-finite numbers as strings."""
         return _finite(self._drawn(draw))
 
     def _drawn(self, draw: random.Random) -> Json:
@@ -187,7 +187,7 @@ class Borders:
             self._lose_or_add(draw, tree, path)
 
     def _rename(self, draw: random.Random, tree: Json, path: str) -> None:
-        """Other names and flags where there are some."""
+        """Replace names and flags, if there are any."""
         named = [p for p in places(tree) if p.rpartition(".")[2] not in ("kind", "name")]
         named = [p for p in named if isinstance(_at(tree, p), (str, bool))] or [path]
         at = draw.choice(named)

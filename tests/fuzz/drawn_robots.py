@@ -14,13 +14,13 @@ TINY = 1e-20
 
 
 class Draw(random.Random):
-    """Numbers that are usual with some probability, and else anywhere in the range of a field."""
+    """Numbers that are usual with some probability, else anywhere in the range of a field."""
 
     wild = 0.3
     """How often a field leaves what is usual."""
 
     def size(self, low: float, high: float, usual: tuple[float, float]) -> float:
-        """A number above 0 by its magnitude, one in six of the wild ones at an end of the range."""
+        """A positive number by magnitude, one in six of the wild ones at an end of the range."""
         if self.random() < self.wild:
             if self.random() < 0.16:
                 return self.choice((low, high))
@@ -32,7 +32,7 @@ class Draw(random.Random):
         return 0.0 if self.random() < 0.3 * self.wild else self.size(low, high, usual)
 
     def signed(self, high: float, usual: float, low: float = 1e-12) -> float:
-        """A number either way, or none."""
+        """A number of either sign, or 0."""
         number = self.size_or_zero(low, high, (0.01 * usual, usual))
         return number if self.random() < 0.6 else -number
 
@@ -77,7 +77,7 @@ def drawn_discs(draw: Draw, axles: float, rear: float, front: float) -> list[Dis
     half = 0.5 * axles
 
     def height(share: float) -> float:
-        # Beyond 100 m are no coordinates.
+        # Coordinates are within 100 m.
         return min(100.0, draw.size_or_zero(1e-12, 100.0, (0.1 * share * axles, share * axles)))
 
     discs = [(-half, height(0.4), rear), (half, height(0.4), front)]
@@ -87,7 +87,7 @@ def drawn_discs(draw: Draw, axles: float, rear: float, front: float) -> list[Dis
         discs.append((x, max(-100.0, side * height(0.3) if side < 0 else height(0.9)), radius))
     draw.shuffle(discs)
     rear_end, front_end = end_discs(discs)
-    # One disc may reach farthest both ways.
+    # One disc may reach farthest in both directions.
     return discs if front_end[0] > rear_end[0] else None
 
 
@@ -133,7 +133,7 @@ def drawn_chain(draw: Draw, outline: c2d.TrackOutline) -> c2d.SegmentalTrack:
 
 
 def drawn_track(draw: Draw, outline: c2d.TrackOutline, *, on_arm: bool = False) -> OpenTrack:
-    """Any model; an arm's has no chain of shoes."""
+    """Any model, but no chain of shoes on an arm."""
     smallest, half = smallest_end(outline), 0.5 * outline.axle_distance
     radius = draw.size(1e-3, max(1e-3, 0.999 * smallest), (0.3 * smallest, 0.9 * smallest))
     given = draw.maybe(0.6, draw.size(1e-3, 100.0, (radius, radius)))
@@ -179,7 +179,7 @@ def drawn_track(draw: Draw, outline: c2d.TrackOutline, *, on_arm: bool = False) 
 def drawn_flippers(
     draw: Draw, outline: c2d.TrackOutline, track: Track, mass: float
 ) -> c2d.Flippers:
-    """Arms whose track is a force where the robot's is."""
+    """Arms, with a force track exactly if the robot has one."""
     smallest, axles = smallest_end(outline), outline.axle_distance
     length = draw.size(1e-3, 100.0, (0.3 * axles, 0.9 * axles))
     low = min(100.0, max(1e-3, 1.001 * outline.grouser_height))

@@ -19,7 +19,7 @@ def _friction(draw: Draw) -> float:
 
 
 def _rough(draw: Draw, size: float, reach: float) -> Points:
-    """Walls and slopes at random, some of them tiny, with level ground at both ends."""
+    """Random walls and slopes, some of them tiny, with level ground at both ends."""
     count = draw.whole(1, 2000, (3, 40))
     x, points = 0.0, [(-reach, 0.0), (0.0, 0.0)]
     for _ in range(count):
@@ -157,7 +157,7 @@ def drawn_criteria(draw: Draw, duration: float) -> c2d.SeizureCriteria:
 
 
 def drawn_solver(draw: Draw, longest: float, track: Track) -> tuple[c2d.Solver, float]:
-    """For a robot on a track, with a time step up to the longest [s]; and their length, about."""
+    """For a robot on a track, with a time step up to the longest [s]; and about that length."""
     is_chain = isinstance(track, c2d.SegmentalTrack)
     how: dict[str, Any] = {}
     if draw.random() < 0.25:

@@ -48,7 +48,7 @@ class Target:
 
     @property
     def command(self) -> list[str]:
-        """What tries cases, and then takes options of libFuzzer."""
+        """The command that tries cases, to which options of libFuzzer are appended."""
         if self.is_rust:
             return [str(BUILT / f"fuzz-{self.name}")]
         return [sys.executable, "-m", "tests.fuzz.guided_target", self.name]
@@ -61,11 +61,11 @@ class Target:
 
     @property
     def found(self) -> Path:
-        """The cases of former times."""
+        """The cases of earlier runs."""
         return OUT / self.name / "cases"
 
     def run(self, *options: str) -> str:
-        """Call it; return what it says."""
+        """Call it; return its output."""
         command = [*self.command, f"-max_len={self.longest}", *LIMITS, *options]
         done = subprocess.run(command, cwd=ROOT, capture_output=True, check=False)
         text = (done.stdout + done.stderr).decode(errors="replace")
@@ -73,7 +73,7 @@ class Target:
         return text
 
     def fuzz(self, seconds: float) -> tuple[str, bool]:
-        """Try cases for so long; say what came out, and whether it was a fault."""
+        """Try cases for a time; return the result, and whether it was a fault."""
         faults, seeds = OUT / self.name / "faults", OUT / self.name / "seeds"
         for folder in (self.found, faults, seeds, self.kept):
             folder.mkdir(parents=True, exist_ok=True)
@@ -100,7 +100,7 @@ class Target:
         return line, is_fault
 
     def keep(self) -> str:
-        """Keep in the repository, of what it has and what was found, what reaches most."""
+        """Store in the repository the cases with the most coverage, of those stored and found."""
         short, merged = OUT / self.name / "short", OUT / self.name / "merged"
         for folder in (short, merged):
             shutil.rmtree(folder, ignore_errors=True)
@@ -160,7 +160,7 @@ TARGETS = [
 
 
 def main(what: str, *names: str) -> int:
-    """Fuzz for so many minutes in all, or keep what was found."""
+    """Fuzz for a number of minutes in total, or store what was found."""
     chosen = [target for target in TARGETS if not names or target.name in names]
     if what == "keep":
         for target in chosen:

@@ -29,7 +29,7 @@ with atheris.instrument_imports(include=["crawler2d", "xacro"]):
     import crawler2d.results
     import crawler2d.sweeps
 
-    # Of the others, each imports what it needs when it is first used.
+    # The others import what they need when they are first used.
     for room in (crawler2d.reading, crawler2d.results, crawler2d.sweeps):
         for module in pkgutil.iter_modules(room.__path__, f"{room.__name__}."):
             importlib.import_module(module.name)
@@ -43,7 +43,7 @@ __all__ = ["xacro"]
 
 
 class Children(StandingChildren):
-    """What they answer is done once more here."""
+    """Their work is repeated here."""
 
     def run(self, command: list[str], **how: Any) -> subprocess.CompletedProcess[Any]:
         done = super().run(command, **how)
@@ -55,7 +55,7 @@ class Children(StandingChildren):
                 work = importlib.import_module(command[-1]).prepare()
                 work(json.loads(how["input"]))
             except ScenarioError:
-                pass  # as it has answered
+                pass  # as in its answer
             finally:
                 sys.stdout = before
                 os.chdir(here)
@@ -63,7 +63,7 @@ class Children(StandingChildren):
 
 
 def changed(data: bytes, most: int, seed: int) -> bytes:
-    """Put faults into a model file; one time of three those of libFuzzer."""
+    """Put faults into a model file, one time in three those of libFuzzer."""
     draw = random.Random(seed)
     new = mutated(data, draw) if draw.random() < 0.67 else atheris.Mutate(data, most)
     return new[:most]

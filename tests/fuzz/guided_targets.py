@@ -71,7 +71,7 @@ def store(data: bytes, folder: Path) -> None:
 
 
 class Draw:
-    """Numbers and texts that bytes say; zeros when there are no more."""
+    """Numbers and texts from bytes, and zeros after their end."""
 
     def __init__(self, data: bytes) -> None:
         self.data = data
@@ -98,7 +98,7 @@ def damage_bytes(content: bytearray, draw: Draw) -> None:
             content[page : page + PAGE] = content[other : other + PAGE]
         case 2:
             del content[max(1, page + draw.below(PAGE)) :]
-        case 3:  # what a page begins with says what is in it
+        case 3:  # the beginning of a page describes its content
             content[min(page + draw.below(128), len(content) - 1)] = draw.below(256)
         case _:
             at = page + draw.below(PAGE)
@@ -120,14 +120,14 @@ def damage_a_text(path: Path, draw: Draw) -> None:
         text = text[:begin] + new.decode(errors="replace") + text[begin + length :]
         change(path, number, **{name: text})
     except (sqlite3.Error, TypeError, ValueError):
-        return  # what is damaged already may not let itself be changed
+        return  # a damaged store may be impossible to change
 
 
 TARGETS: dict[str, Target] = {"model": model, "xacro": xacro, "mjcf": mjcf, "store": store}
 
 
 def prepare(name: str, folder: Path) -> None:
-    """Put into a folder what the cases of a target name."""
+    """Put the files that the cases of a target name into a folder."""
     warnings.simplefilter("ignore", c2d.ScenarioWarning)
     if name == "store":
         sound(folder / "original.sqlite", repeats=1)

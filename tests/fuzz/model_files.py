@@ -26,7 +26,7 @@ CARTS = carts.FILES
 
 
 def _written(track: Track, form: str, discs: Sequence[Disc] | None = None) -> bytes:
-    """A robot as a model file, without the comment in it, which nobody reads."""
+    """A robot as a model file without its comment, which is not read."""
     robot = c2d.robots.engineer(track=track)
     if discs is not None:
         outline = c2d.TrackOutline(
@@ -151,7 +151,7 @@ URDF = {
 
 
 def _with_gaps() -> bytes:
-    """Lack files, packages, macros and arguments, in the xacro of long ago, and do without."""
+    """Old xacro with missing files, packages, macros and arguments, which are left out."""
     parts = """
 <property name="low" value="0.001"/>
 <xacro:include filename="lost.xacro"/>

@@ -19,7 +19,7 @@ from tests.fuzz import texts as fuzz_texts
 
 
 class Refuses:
-    """Fails whatever it is asked."""
+    """Fails in every operation."""
 
     def _refuse(self, *_: object, **__: object) -> Any:
         raise RuntimeError("not me")
@@ -30,7 +30,7 @@ class Refuses:
 
 
 class Mine(float):
-    """A float of one's own."""
+    """A subclass of float."""
 
 
 class Whole(enum.IntEnum):
@@ -149,7 +149,7 @@ def _anything(draw: random.Random, other: Any) -> Any:
 
 
 def odd(draw: random.Random, other: Any) -> Any:
-    """What may be set where a field is: something drawn, or `other`, the value of another field."""
+    """A value for a field: something drawn, or `other`, the value of another field."""
     chance = draw.random()
     if chance < 0.3:
         return _number(draw)
@@ -182,7 +182,7 @@ def changed(node: Any, names: tuple[str, ...], value: Any) -> Any:
 
 
 def drawn_object(draw: random.Random, bases: list[Scenario]) -> Scenario:
-    """A scenario, or what its constructors say to odd values in one field or several."""
+    """A scenario, or the errors of its constructors for odd values in one or several fields."""
     whole = draw.choice(bases)
     for _ in range(draw.choice((1, 1, 1, 2, 3))):
         names, _value = draw.choice(list(fields(whole)))

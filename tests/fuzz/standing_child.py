@@ -1,4 +1,4 @@
-"""A child process that stands ready: what imports cost is paid once, all else is as for any child.
+"""A standing child process, which imports only once and otherwise works like any child.
 
 Started as a program, it imports what a child of the reader needs. For each question it forks, and
 the fork does what the child does when it is started: it sets its limits, reads the question and
@@ -76,7 +76,7 @@ class StandingChild:
     def run(
         self, command: list[str], *, input: bytes, cwd: Path, **_: Any
     ) -> subprocess.CompletedProcess[bytes]:
-        """Answer as `subprocess.run` does."""
+        """Answer like `subprocess.run`."""
         assert command[-1] == self.program
         assert self.process.stdin is not None
         assert self.process.stdout is not None
@@ -153,7 +153,7 @@ def _stand(program: str) -> None:
 
 
 def _answer(prepare: Any, folder: str, environment: dict[str, str]) -> None:
-    """Do what the child does when it is started; never return."""
+    """Do the work of a started child; never return."""
     signal.alarm(PATIENCE)
     status = 1
     try:

@@ -10,8 +10,8 @@ import crawler2d as c2d
 from crawler2d.parameters.scenario import Scenario
 from tests.shared import ROBOT, refusal
 
-# What overlaps is then due to shapes: in the long steps that the default accuracy allows, corners
-# dip in by 20 um, and 0.1 mm where the engine finds the contacts.
+# Overlaps are then due to shapes: in the long steps that the default accuracy allows, corners
+# penetrate by 20 um, and by 0.1 mm if the engine finds the contacts.
 OF_1_MS = c2d.Solver(time_step=1e-3)
 
 

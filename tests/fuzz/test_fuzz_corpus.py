@@ -1,4 +1,4 @@
-"""The cases that fuzzing by coverage has kept: each is read, or refused as is documented."""
+"""The stored cases of fuzzing by coverage: each is read, or refused as documented."""
 
 import sys
 import time
@@ -29,7 +29,7 @@ def test_every_kept_case_is_read_or_refused(name: str, tmp_path: Path) -> None:
 
 
 def test_the_kept_corpus_reaches_most_edges() -> None:
-    """A case that is small and reaches little is not kept before one that reaches much."""
+    """A small case with little coverage is not preferred to one with more."""
     cases = {"a": "1", "b": "2", "c": "1 2 3", "d": "4 5 6 7", "e": "7 8"}
     lines = [f"STARTED {n} {n}\nFT {n} {edges}\nCOV {n}" for n, edges in enumerate(cases.values())]
     control = "\n".join(["5", "0", *cases, *lines])

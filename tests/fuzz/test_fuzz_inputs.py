@@ -1,4 +1,4 @@
-"""Whatever is taken for a scenario, as text or objects: it is one, or it is refused by name."""
+"""Any text or object as a scenario is either valid, or refused with the name of the field."""
 
 import pickle
 import random
@@ -40,7 +40,7 @@ def from_objects(draw: random.Random) -> tuple[str, Callable[[], Scenario]]:
 
 
 def is_told(error: c2d.ScenarioError) -> bool:
-    """Whether an error can be shown, and handed to another process."""
+    """Whether an error can be printed, and passed to another process."""
     copy = pickle.loads(pickle.dumps(error))
     shown = str(error)
     whole = (copy.path, copy.rule, str(copy)) == (error.path, error.rule, shown)
@@ -48,14 +48,14 @@ def is_told(error: c2d.ScenarioError) -> bool:
 
 
 def survives(scenario: Scenario) -> bool:
-    """Whether a scenario is the same when it is written and read."""
+    """Whether a scenario is unchanged by writing and reading."""
     copy = Scenario.from_json(scenario.to_json())
     equal = copy == scenario and hash(copy) == hash(scenario)
     return equal and copy.identity == scenario.identity and copy.to_json() == scenario.to_json()
 
 
 def fuzzed(name: str, drawn: Drawn, count: int) -> Account:
-    """Try so many cases; the number of a case and the seed make it again."""
+    """Try a number of cases; a case is determined by its number and the seed."""
     account = Account(name)
     for case in range(count):
         what, made = drawn(random.Random(f"{SEED}:{name}:{case}"))
@@ -87,7 +87,7 @@ def check(name: str, drawn: Drawn, count: int, say: Say = print) -> None:
     assert account.counts["refused"] > 0.5 * count
 
 
-# What is doubtful may be warned of; that is not what is asked here.
+# Doubtful values may give warnings, which are not tested here.
 pytestmark = pytest.mark.filterwarnings("ignore::crawler2d.ScenarioWarning")
 
 

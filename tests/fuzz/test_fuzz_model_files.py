@@ -1,4 +1,4 @@
-"""Whatever is wrong with a model file: it is read or refused, soon and in little memory.
+"""A faulty model file is read or refused, quickly and in little memory.
 
 MuJoCo and xacro read in processes of their own, most of whose time goes into imports. Some files go
 through the whole door, a process each; thousands are read in forks of a process that has imported
@@ -53,7 +53,7 @@ def computed() -> float:
 
 
 def put_parts(folder: Path, parts: tuple[str, ...], draw: random.Random | None = None) -> None:
-    """Write what models name; if one draws, one of it is mutated every other time."""
+    """Write the files that models name; with random draws, one is mutated every other time."""
     faulty = draw.choice(parts) if draw and parts and draw.random() < 0.5 else None
     for name in parts:
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
@@ -232,7 +232,7 @@ def test_a_waiting_child_process_is_ended_like_any_other(tmp_path: Path) -> None
         # The system counts what a timer has run in ticks, a whole one for whoever runs when it
         # ends, and what was used exactly: on a busy machine they differ by a quarter and more.
         assert 1 < standing.seconds < LONGEST
-        # The next one is answered again: it is read, and is no robot.
+        # The next one is answered again: it is read, and is not a robot.
         path.write_text('<robot name="r"><link name="a"/></robot>')
         with pytest.raises(c2d.ScenarioError, match="must have") as caught:
             c2d.read_robot(path, trusted=True)

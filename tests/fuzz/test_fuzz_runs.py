@@ -1,4 +1,4 @@
-"""Whatever is legal runs: to numbers, or to an error that says why not; and it answers Ctrl-C."""
+"""Any valid scenario gives numbers, or an error that says why not; and it answers Ctrl-C."""
 
 import gc
 import re
@@ -31,7 +31,7 @@ def _columns(name: str, table: Table) -> Iterable[tuple[str, Any]]:
 
 
 def unbounded(named: Iterable[tuple[str, Any]]) -> list[str]:
-    """Names of what has numbers that are none."""
+    """Names of values with numbers that are not finite."""
 
     def is_finite(values: Any) -> bool:
         array = np.asarray(values)
@@ -41,7 +41,7 @@ def unbounded(named: Iterable[tuple[str, Any]]) -> list[str]:
 
 
 def of_run(run: c2d.Run) -> list[str]:
-    """The values of a run that are not numbers."""
+    """Names of values of a run that are not finite."""
     named: list[tuple[str, Any]] = [
         (name, value)
         for name, value in run.metrics.items()
@@ -57,7 +57,7 @@ def of_run(run: c2d.Run) -> list[str]:
 
 
 def of_state(sim: c2d.Simulation) -> list[str]:
-    """The values of an instant that are not numbers."""
+    """Names of values of an instant that are not finite."""
     state = sim.state()
     numbers = ("position", "velocity", "chassis_angle", "angular_velocity", "commanded_speed")
     more = ("time", "track_speed", "track_position", "flipper_angles")
@@ -102,7 +102,7 @@ def stepwise(draw: Draw, scenario: Scenario) -> tuple[str, list[str]]:
 
 
 def tried(draw: Draw, account: Account, case: str, scenario: Scenario) -> None:
-    """Run a scenario in one of the ways, and book what came of it."""
+    """Run a scenario in one of the ways, and record the result."""
     way = stepwise if draw.random() < 0.25 else simulated
     # Some are interrupted early on, wherever they are; half of all take less than 10 ms.
     patience = draw.size(1e-3, 1.0, (1e-3, 0.01)) if draw.random() < 0.4 else PATIENCE
@@ -130,7 +130,7 @@ def scenario_of(number: int, draw: Draw) -> Scenario:
 
 
 def fuzzed(count: int) -> Account:
-    """Try so many cases; the number of a case and the seed make it again."""
+    """Try a number of cases; a case is determined by its number and the seed."""
     account = Account("runs")
     for number in range(count):
         case = f"case {number}"
@@ -161,7 +161,7 @@ def check(count: int, say: Say = print) -> None:
     say(f"{account}; answers to interrupts within {1e3 * account.latest:.0f} ms")
     assert not account.faults
     assert account.counts["refused"] < 0.6 * count
-    # Numbers that no run comes to are rare, and memory that nobody has.
+    # Implausible numbers are rare, as is impossible memory.
     assert account.counts["SimulationDiverged"] < 0.01 * count
     assert account.counts["LimitError"] < 0.01 * count
     ends = {str(outcome) for outcome in Outcome if outcome.is_stop} | {"cleared"}

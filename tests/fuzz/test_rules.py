@@ -165,7 +165,7 @@ def _spikes(count: int) -> Json:
 
 
 def _long() -> list[Json]:
-    """Lists as long as they may be, and one longer."""
+    """Lists of the largest length, and one longer."""
     step = [[0.001 * i, 0.0] for i in range(200_001)]
     level = {"goal": 0.0, "kind": "points", "edge_radius": 0.0, "friction": 0.5}
     made = [_spikes(5555), _spikes(5556)]
@@ -224,7 +224,7 @@ class Agreement(Account):
 
 
 def judged(count: int) -> Agreement:
-    """So many drawn scenarios; the number of a case and the seed make it again."""
+    """A number of drawn scenarios; a case is determined by its number and the seed."""
     borders = Borders([json.loads(scenario.to_json()) for scenario in MORE])
     account, begin = Agreement("rules"), time.process_time()
     account.numeric.update(borders.rules)
@@ -307,7 +307,7 @@ def _texts() -> set[str]:
     return rules
 
 
-# What is doubtful may be warned of; that is not what is asked here.
+# Doubtful values may give warnings, which are not tested here.
 pytestmark = pytest.mark.filterwarnings("ignore::crawler2d.ScenarioWarning")
 
 

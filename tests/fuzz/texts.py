@@ -1,4 +1,4 @@
-"""JSON texts that are wrong, odd or right: scenarios with values, keys and characters changed."""
+"""Invalid, odd and valid JSON texts: scenarios with changed values, keys and characters."""
 
 import json
 import math

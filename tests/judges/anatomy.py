@@ -1,4 +1,4 @@
-"""What a robot is made of to the second judge: its bodies by number, and what turns each of them.
+"""A robot for the second judge: its bodies by number, and their drives.
 
 Numbers are those of docs/conventions.md: the track of the chassis, the arms in front, those behind,
 the belly; on two lanes all of the left first. Pictures give the places.
@@ -42,7 +42,7 @@ class Body:
 
 @dataclass(frozen=True, kw_only=True)
 class Loop:
-    """What a taut belt would run round: the bodies of one carrier on one lane."""
+    """The bodies of one carrier on one lane, round which a taut belt would run."""
 
     carrier: int
     lane: int
@@ -56,7 +56,7 @@ class Loop:
 
 
 def shapes_of(geometry: dict[str, Any]) -> list[dict[str, Any]]:
-    """Shapes of each carrier with the outlines [m] of its gear wheels, and how many grousers."""
+    """Shapes of each carrier with the outlines [m] of its gear wheels, and numbers of grousers."""
     bodies = geometry["bodies"]
     is_gear = (bodies["kind"] == c2d.BodyKind.WHEEL) & np.isnan(bodies["radius"])
     return [
@@ -129,7 +129,7 @@ class Anatomy:
             for number in range(int(shapes["bodies"][0])):
                 shoe = Body(carrier=0, lane=0, drive=0, form="shoe", shoe=number // each)
                 self.bodies.append(shoe)
-            # What a chain runs on stands or turns freely; only a guide has friction.
+            # The bodies inside a chain stand or turn freely; only a guide has friction.
             friction = math.inf if track.mechanism == "guide" else 0.0
             inside = Body(carrier=0, lane=0, drive=-1, form="fixed", friction=friction)
             self.bodies += [inside] * len(set(shapes["bodies"]))
@@ -138,7 +138,7 @@ class Anatomy:
             self.motors = self._driven(0, shapes, 0)
 
     def _over_the_gear(self, track: c2d.SegmentalTrack, shapes: dict[str, Any]) -> float:
-        """[m] What lies over guide or wheels up to the tips of the grousers."""
+        """[m] Height from guide or wheels to the tips of the grousers."""
         outline = self.robot.outline
         if track.mechanism == "guide":
             return outline.rear_radius - float(shapes["circles"][0, 2])
@@ -161,7 +161,7 @@ class Anatomy:
             self._driven(number, shapes, 0)
 
     def _driven(self, carrier: int, shapes: dict[str, Any], first: int) -> int:
-        """Wheels or a belt on drives from a number on; how many these are."""
+        """Wheels or a belt on drives from a number on, and the number of these drives."""
         each = self.with_own_motors and not shapes["closed"]
         gears = shapes["gears"]
         count = len(set(shapes["bodies"]))
@@ -220,7 +220,7 @@ class Anatomy:
             self.limit *= 0.5
 
     def ground_friction(self, lane: int) -> float:
-        """[-] Of what lies there: each lane has its own where they are told apart."""
+        """[-] Friction of the ground there; lanes have their own if they are distinguished."""
         terrain = self.terrain
         if not isinstance(terrain, Lanes):
             return float(terrain.friction)
@@ -229,6 +229,6 @@ class Anatomy:
         return {0: left, 1: left, 2: right, 3: middle}[lane]
 
     def line_of(self, body: Body) -> Array:
-        """The circles that the line of a belt goes round, which carries this grouser."""
+        """The circles round which the line of this grouser's belt runs."""
         loop = next(x for x in self.loops if (x.carrier, x.lane) == (body.carrier, body.lane))
         return loop.roots

@@ -1,4 +1,4 @@
-"""What carries tracks, to the second judge: the chassis and its arms over some samples of a run."""
+"""Carriers of tracks for the second judge: the chassis and its arms at samples of a run."""
 
 import math
 from dataclasses import dataclass
@@ -51,7 +51,7 @@ def arms_of(robot: c2d.Robot) -> list[Arm]:
 
 
 class Carriers:
-    """Chassis and arms at samples of a run, each with a frame of its own."""
+    """Chassis and arms at samples of a run, each with its own frame."""
 
     def __init__(self, run: c2d.Run, samples: NDArray[np.bool_]) -> None:
         robot = run.scenario.robot
@@ -73,12 +73,12 @@ class Carriers:
         return origin + turned(arm.pivot, angle) + turned(arm.middle, own), own
 
     def pivot(self, carrier: int, poses: Array) -> Array:
-        """[m] Where an arm hangs on the chassis."""
+        """[m] Position of an arm's pivot on the chassis."""
         poses = np.atleast_2d(poses)
         return np.asarray(poses[:, :2] + turned(self.arms[carrier - 1].pivot, poses[:, 2]))
 
     def center_of_mass(self, poses: Array) -> Array:
-        """[m] Of the whole robot; it goes with the arms."""
+        """[m] Centre of mass of the whole robot, which moves with the arms."""
         poses = np.atleast_2d(poses)
         center = poses[:, :2] + turned(self.center, poses[:, 2])
         for number, arm in enumerate(self.arms, 1):

@@ -1,4 +1,4 @@
-"""Holds the sentence of a stop against its run: which of its claims are false?
+"""Compares the sentence of a stop with its run, to find false claims.
 
 What is seen is held against the second judge, which knows the tables of the run and plane geometry;
 what was tried, against runs that continue from the same instants as scenarios made here. Nothing is
@@ -49,7 +49,7 @@ LOAD = re.compile(r"(under a load of|under|with) (\d+) N")
 
 
 class Claims:
-    """What the sentence of one run says, clause by clause."""
+    """The claims of the sentence of one run, clause by clause."""
 
     def __init__(self, run: c2d.Run) -> None:
         assert run.diagnosis is not None
@@ -67,7 +67,7 @@ class Claims:
     # What is seen
 
     def of_what_is_seen(self) -> Iterator[tuple[str, bool]]:
-        """Yield each clause of what is seen, and whether it is so."""
+        """Yield each clause about observations, and whether it is true."""
         opinion = self.judge.opinion()
         word = self.head.removeprefix("temporarily ").split(" between")[0]
         word = re.split(r" (?:at|under|on) ", word)[0].replace(" ", "_")
@@ -82,14 +82,14 @@ class Claims:
         """Whether the most loaded ground inside is between the wheels that a text names."""
         named = BETWEEN.search(text)
         if named is None:
-            return True  # chains and grousers: bodies that have no numbers
+            return True  # chains and grousers, which have no numbers
         assert self.judge.most_loaded is not None
         if self.judge.pieces[self.judge.most_loaded].root_normal is None:
-            return True  # the judge looks between root circles alone
+            return True  # the judge considers only root circles
         return sorted(map(int, named.groups())) == sorted(self.judge.beside(self.judge.most_loaded))
 
     def is_seen(self, clause: str) -> bool:
-        """Whether a clause is so."""
+        """Whether a clause is true."""
         judge = self.judge
         figure = re.search(r"([\d.]+) %", clause)
         share = float(figure[1]) / 100.0 if figure else 1.0
@@ -122,7 +122,7 @@ class Claims:
         return inside and (loop.carrier > 0) == arm and self.is_between(found["where"])
 
     def bears(self, clause: str) -> bool:
-        """Whether the bodies that are said to bear on the ground inside do so, with these loads."""
+        """Whether the named bodies bear on the ground inside with these loads."""
         judge = self.judge
         on_it = [c for c in judge.contacts if judge.most_loaded in c.pieces]
         by_body: dict[int, float] = {}
@@ -137,7 +137,7 @@ class Claims:
         return bool(loads) and all(near)
 
     def looseness(self) -> float:
-        """[-] How far means may be apart: of a robot that rattles, they are over other windows."""
+        """[-] Allowed difference of means, which for rattling robots are over other windows."""
         width = self.judge.to_and_fro()
         if width < 1e-4:
             return 0.05
@@ -155,7 +155,7 @@ class Claims:
     # What was tried
 
     def of_what_was_tried(self) -> Iterator[tuple[str, bool | None]]:
-        """Yield each trial that the sentence tells of, and whether it went so; None: not known."""
+        """Yield each trial in the sentence, and whether its claim is true; None if unknown."""
         if self.left:
             yield f"unchanged: {self.left}", self.went("unchanged", self.left)
         for clause in self.tried.split("; ") if self.tried else ():
@@ -165,7 +165,7 @@ class Claims:
             yield self.beyond, self.is_beyond_belts()
 
     def is_beyond_belts(self) -> bool:
-        """Whether no belt from the start gets past the stop, or even comes to it, as is said."""
+        """Whether no belt from the start gets past the stop, or even to it, as claimed."""
         starts = ("belt from the start", "closed track from the start")
         runs = [c2d.simulate(self.variant(change)) for change in starts]
         farthest = max(self.ahead(run) for run in runs)
@@ -191,7 +191,7 @@ class Claims:
         return away[0] == freed and self.ended(runs[0], said)
 
     def went_from_clear(self, said: str, freed: bool) -> bool:
-        """The start is made by the program; that it is clear and at rest is looked at here."""
+        """Check that the start, which the program makes, is clear and at rest."""
         run = self.run.what_if("closed track, clear of the ground").run
         at_rest = not run.velocity[0].any() and not run.angular_velocity[0]
         first = run.contacts["time"] <= run.time[1]
@@ -199,7 +199,7 @@ class Claims:
         return at_rest and shallow and self.gets_away(run) == freed and self.ended(run, said)
 
     def variant(self, change: str) -> Scenario:
-        """The scenario with one thing changed."""
+        """The scenario with one change."""
         own = self.run.scenario
         track: Any = own.robot.track
         torque = own.robot.drivetrain.max_torque
@@ -248,7 +248,7 @@ class Claims:
         return float((self.direction * run.position[:, 0]).max()) - self.greatest
 
     def gets_away(self, run: c2d.Run) -> bool:
-        """Whether it clears, or gets ahead of all before and is not lost afterwards."""
+        """Whether it clears, or gets farther than before and is not lost afterwards."""
         if run.outcome is c2d.Outcome.CLEARED:
             return True
         is_lost = run.outcome in ("tipped_over", "left_terrain", "detracked")
@@ -267,12 +267,12 @@ class Claims:
             return run.diagnosis is not None and self.is_jammed(Judge(run), end)
         if end in STOPS:
             return run.diagnosis is not None and Judge(run).opinion().symptom == STOPS[end]
-        # Free, or moving on, and no more is said.
+        # Free, or still moving, without further claims.
         moves = ("free after", "past here after", "still moving", "is still moving")
         return said.startswith(moves) and run.diagnosis is None
 
     def is_jammed(self, judge: Judge, end: str) -> bool:
-        """Whether a trial ended in a jam, and where that is said to be."""
+        """Whether a trial ended in a jam, and at the claimed position."""
         found = JAM.match(end)
         if found is None or not judge.opinion().jammed or judge.most_loaded is None:
             return False
@@ -308,7 +308,7 @@ def with_twice_the_friction(terrain: Any) -> Any:
 
 
 def false_claims(run: c2d.Run) -> tuple[int, list[str]]:
-    """How many claims the sentence of a stop makes, and those of them that are false."""
+    """Return the number of claims in the sentence of a stop, and the false ones."""
     claims = Claims(run)
     held = [*claims.of_what_is_seen(), *claims.of_what_was_tried()]
     known = [(claim, is_so) for claim, is_so in held if is_so is not None]

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-# Between these directions a circle of 64 mm and its tangents part by less than 0.1 um.
+# Between these directions a circle of 64 mm and its tangents differ by less than 0.1 um.
 ANGLES = np.linspace(0.0, 2.0 * math.pi, 3600, endpoint=False)
 # [m] Circles this close to a tangent carry it.
 TOUCHING = 1e-9
@@ -33,14 +33,14 @@ def cross(a: Array, b: Array) -> Array:
 
 
 def placed(circles: Array, x: float, y: float, angle: float) -> Array:
-    """Circles of the chassis frame, rows of x, y, radius, where a pose puts them."""
+    """Transform circles, rows of x, y, radius, from the chassis frame by a pose."""
     c, s = math.cos(angle), math.sin(angle)
     turned = circles[:, :2] @ np.array([[c, s], [-s, c]])
     return np.column_stack([turned + np.array([x, y]), circles[:, 2]])
 
 
 def nearest(point: Array, starts: Array, ends: Array) -> tuple[Array, Array]:
-    """[-], [m] How far along each of some straight lines a point is, and how far off."""
+    """[-], [m] Position of a point along each of several lines, and its distance."""
     along = ends - starts
     squared = np.maximum((along**2).sum(axis=1), 1e-30)
     share = np.clip(((point - starts) * along).sum(axis=1) / squared, 0.0, 1.0)
@@ -49,7 +49,7 @@ def nearest(point: Array, starts: Array, ends: Array) -> tuple[Array, Array]:
 
 
 class WayRound:
-    """The belt anticlockwise as a polyline that knows its outward normals."""
+    """The belt anticlockwise as a polyline with outward normals."""
 
     def __init__(self, points: Array, normals: Array) -> None:
         self.points, self.normals = points, normals
@@ -69,7 +69,7 @@ class WayRound:
         a, b = self.along(first), self.along(last)
         span = (b - a) % self.total
         start = (self.way - a) % self.total
-        # What begins before the first place and goes beyond it is cut there.
+        # Pieces that begin before the first place and extend beyond it are cut there.
         wraps = start + self.lengths > self.total
         low = np.where(wraps, self.total - start, 0.0)
         high = np.where(wraps, self.lengths, np.minimum(self.lengths, span - start))
@@ -131,7 +131,7 @@ class Hull:
         return [int(i) for i in np.flatnonzero(reach > reach.max() - TOUCHING)]
 
     def depth(self, point: Array) -> float:
-        """[m] How deep a point is inside; negative: outside."""
+        """[m] Depth of a point inside; negative outside."""
         return float((self.support - self.directions @ point).min())
 
     def neighbours(self, place: Array, normal: Array) -> tuple[int, int]:
@@ -145,7 +145,7 @@ class Hull:
 
 
 class Ground:
-    """A polyline, met by arc length."""
+    """A polyline, parametrized by arc length."""
 
     def __init__(self, profile: Array) -> None:
         self.starts, self.ends = profile[:-1], profile[1:]

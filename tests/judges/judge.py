@@ -1,4 +1,4 @@
-"""A second judge of stops: from the tables of a run and plane geometry, in its own words.
+"""A second, independent judge of stops, from the tables of a run and plane geometry.
 
 It shares no code with the core and never reads `Run.diagnosis`. Belts are followed by the support
 functions of their circles, the ground by its arc length, and balance is that of the whole robot and
@@ -36,7 +36,7 @@ class Opinion:
 
 
 class Judge(Stop):
-    """Says why it is one."""
+    """Finds out the reason of a stop."""
 
     # Balance
 
@@ -73,14 +73,14 @@ class Judge(Stop):
         return float(np.ptp(self.poses[:, :3] * scale, axis=0).max())
 
     def stalled(self) -> NDArray[np.bool_]:
-        """Which motors stand at their torque limit."""
+        """Which motors stand still at their torque limit."""
         full = abs(self.drive_forces) >= self.criteria.torque_limit * self.limit
         return np.asarray(full & (abs(self.drive_speeds[: self.motors]) < self.slow))
 
     def within(self, speed: float) -> tuple[float, float]:
-        """[-] Forces that a motor at a speed can have, in weights.
+        """[-] Possible forces of a motor at a speed, in weights.
 
-        A gear that locks itself holds any load at rest, and any that pulls what moves on.
+        A self-locking gear holds any load at rest, and brakes any load that pulls it on.
         """
         most = self.limit / self.weight
         if not self.locks:
@@ -89,13 +89,13 @@ class Judge(Stop):
         return (-most if back else -math.inf), (most if ahead else math.inf)
 
     def stalled_share(self) -> float:
-        """[-] Of the motors that bear on the ground, or on the chassis."""
+        """[-] Fraction of the motors that act on the ground, or on the chassis."""
         loaded = {c.drive for c in self.contacts if c.normal_force > 0.0}
         bearing = [j for j in range(self.motors) if self.is_force or j in loaded]
         return float(self.stalled()[bearing].mean()) if bearing else 0.0
 
     def belly_share(self) -> float:
-        """[-] Of the lift; what pulls down where the robot is wedged is none."""
+        """[-] Fraction of the lift; downward forces on a wedged robot do not count."""
         lifts = {True: 0.0, False: 0.0}
         for c in self.contacts:
             force = c.normal_force * c.normal + c.friction_force * c.tangent
@@ -104,7 +104,7 @@ class Judge(Stop):
         return lifts[True] / total if total > 0.0 else 0.0
 
     def into_ground(self) -> float:
-        """[-] Greatest speed into the ground of a surface on the most loaded piece."""
+        """[-] Largest speed into the ground of a surface on the most loaded piece."""
         speeds = [
             -self.ahead * float(c.motion @ c.normal)
             for c in self.contacts
@@ -142,7 +142,7 @@ class Judge(Stop):
         return self.held(on_it, by_body)
 
     def held(self, on_it: list[Bearing], by_body: dict[int, float]) -> str | None:
-        """By motors that cannot turn, or by surfaces that can."""
+        """Held by motors that cannot turn, or by surfaces that can."""
         if self.stalled_share() >= 0.5:
             return "interlocked" if self.into_ground() > FLANK else "blocked"
         least = 0.5 * self.criteria.intrusion_load * self.weight
@@ -182,7 +182,7 @@ class Judge(Stop):
 
 
 def judge(run: c2d.Run) -> Opinion:
-    """Say what is seen of a recorded stop, before anything is tried.
+    """Judge a recorded stop before any trials.
 
     Parameters
     ----------

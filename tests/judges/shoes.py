@@ -1,4 +1,4 @@
-"""Shoes of a chain to the second judge: how the chain moves each of them, and which pinch."""
+"""Shoes of a chain for the second judge: their motion, and which of them pinch."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,7 +24,7 @@ class Shoes:
         self.count: int = poses.shape[1] // chains
 
     def beside(self, shoe: int, steps: int) -> int:
-        """The shoe so many places ahead in the same chain."""
+        """The shoe a number of places ahead in the same chain."""
         first = shoe - shoe % self.count
         return first + (shoe - first + steps) % self.count
 

@@ -1,4 +1,4 @@
-"""Balance of the second judge: of the whole robot and of each drive, by a linear program."""
+"""Balance for the second judge, of the whole robot and of each drive, by a linear program."""
 
 import math
 from dataclasses import dataclass, field
@@ -14,7 +14,7 @@ Range = tuple[float, float]
 
 @dataclass
 class Bearing:
-    """A contact in the mean: forces on the robot, levers about its centre of mass."""
+    """An averaged contact: forces on the robot, levers about its centre of mass."""
 
     body: int
     drive: int
@@ -64,7 +64,7 @@ class Hinge:
 
 @dataclass(frozen=True, kw_only=True)
 class Balance:
-    """What has to be in balance; forces count in weights."""
+    """Everything that has to balance, with forces in weights."""
 
     drives: int
     half_length: float
@@ -80,7 +80,7 @@ class Balance:
     def imbalance(
         self, contacts: list[Bearing], pins: list[float | None], motors: list[Range]
     ) -> float:
-        """[-] Least share of the weight that no choice of forces balances.
+        """[-] Smallest residual for any choice of forces, as a fraction of the weight.
 
         A pin is the friction per normal force of a contact that slides; None leaves it free in its
         cone. Each motor has a range of forces.

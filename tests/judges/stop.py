@@ -1,4 +1,4 @@
-"""A stop as seen by the second judge: means of the last windows, and the ground inside."""
+"""A stop for the second judge: means of the last windows, and the ground inside."""
 
 import math
 
@@ -196,7 +196,7 @@ class Stop:
                 self.forces[i] += contact.normal_force
         least = self.criteria.intrusion_load * self.weight
         self.loaded = [i for i, force in enumerate(self.forces) if force > least]
-        # Between two bodies: what is inside the circle of one is no pocket of the track.
+        # Between two bodies: ground inside the circle of one is not in a pocket of the track.
         self.pockets = [
             i
             for i in self.loaded

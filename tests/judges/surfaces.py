@@ -1,4 +1,4 @@
-"""How drives move the surfaces of bodies, to the second judge."""
+"""Motion of the surfaces of bodies by drives, for the second judge."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,12 +12,12 @@ def round_surface(normals: Array) -> Array:
 
 
 def gear_surface(points: Array, axle: Array, radius: float) -> Array:
-    """[-] The same of points of a gear, which turns clockwise; `axle` has a row for each."""
+    """[-] The same for points of a gear, which turns clockwise; `axle` has a row for each."""
     return right_of(points - axle) / radius
 
 
 def carried_by_belt(points: Array, circles: Array) -> Array:
-    """[-] The same of points of grousers on a belt taut round circles.
+    """[-] The same for points of grousers on a belt taut round circles.
 
     On a run they go along it, round a circle they turn about its axle.
     """

@@ -52,11 +52,11 @@ def weave(faults: list[Fault]) -> list[Fault]:
 
 
 def uncompiled() -> Iterator[int]:
-    """Yield the numbers of faults at which the compiler stumbles."""
+    """Yield the numbers of faults that do not compile."""
     for message in cargo("check", "--lib"):
         if message["reason"] != "compiler-message" or message["message"]["level"] != "error":
             continue
-        # Of a match that lacks an arm, the fault is in what follows.
+        # If a match lacks an arm, the fault is in what follows.
         is_match = (message["message"]["code"] or {}).get("code") == "E0004"
         for span in message["message"]["spans"]:
             if span["is_primary"]:
@@ -86,7 +86,7 @@ def programs() -> Iterator[Path]:
 
 
 def cargo(verb: str, *what: str) -> Iterator[Any]:
-    """Yield what cargo says of the core with the faults, whose warnings do not matter."""
+    """Yield cargo's messages about the core with the faults; warnings do not matter."""
     options = ["--release", "--config", PROFILE, "--package=crawler2d-core"]
     told = subprocess.run(
         ["cargo", verb, *options, *what, "--quiet", "--message-format=json"],

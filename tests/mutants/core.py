@@ -86,7 +86,7 @@ def main() -> int:
 
 
 def tried(name: str, size: int, seed: int, seconds: float) -> int:
-    """Try a sample of a group, and return how many of it survived."""
+    """Try a sample of a group, and return the number of survivors."""
     rooms = (GROUPS | CORE)[name]
     every = faults_of(rooms)
     drawn = random.Random(seed).sample(every, len(every))

@@ -103,7 +103,7 @@ class Mutant:
 
     @property
     def argued(self) -> list[str]:
-        """Why no test can notice it, if so."""
+        """The reason why no test can notice it, if any."""
         return [why for part, what, why in EQUIVALENT if part in self.code and what == self.change]
 
     def __str__(self) -> str:
@@ -191,7 +191,7 @@ def is_silent(node: ast.AST) -> bool:
 
 
 def variants(node: ast.AST) -> Iterator[tuple[str, ast.AST]]:
-    """Yield what a node can be changed to, and a word for it."""
+    """Yield possible changes of a node, with a word for each."""
     for changed in [*operators(node), *values(node)]:
         yield f"{ast.unparse(node)} -> {ast.unparse(changed)}", changed
     if isinstance(node, (ast.If, ast.IfExp)):
@@ -239,7 +239,7 @@ def values(node: ast.AST) -> Iterator[ast.AST]:
 
 
 def put(tree: ast.AST, path: Place, node: ast.AST) -> None:
-    """Put a node in the place of another."""
+    """Replace a node by another."""
     for step in path[:-1]:
         tree = at(tree, step)
     name, index = path[-1]

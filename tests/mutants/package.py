@@ -110,7 +110,7 @@ class Tests:
             yield chosen[count:]
 
     def drop(self, tests: Iterable[str]) -> None:
-        """Try these no more."""
+        """Do not try these again."""
         for test in tests:
             del self.seconds[test]
 
@@ -179,7 +179,7 @@ def copied(folder: Path) -> Path:
 
 
 def notices(mutant: Mutant, tests: Tests, number: int) -> str:
-    """Return the test that fails of a mutant, or what else ends it; nothing if none does."""
+    """Return the test that fails for a mutant, or what else ends it; nothing if none does."""
     chosen = tests.of(mutant)
     if not chosen:
         return ""
@@ -187,7 +187,7 @@ def notices(mutant: Mutant, tests: Tests, number: int) -> str:
     failed = ""
     try:
         mutant.file.write_text(mutant.source(), encoding="utf-8")
-        os.utime(mutant.file, (number, number))  # of no byte code that there is
+        os.utime(mutant.file, (number, number))  # not from existing byte code
         for batch in tests.batches(chosen):
             seconds = 10 + 5 * sum(tests.seconds[test] for test in batch)
             failed = next(iter(failures(batch, seconds, "-x")), "")

@@ -30,7 +30,7 @@ Position = tuple[int, int]
 
 @dataclass(frozen=True)
 class Fault:
-    """One of those that cargo-mutants lists."""
+    """A fault in the list of cargo-mutants."""
 
     number: int
     name: str
@@ -69,7 +69,7 @@ def listed(text: str) -> list[Fault]:
 
 
 def woven(text: str, faults: list[Fault]) -> str:
-    """Return a source with those of its faults that a switch can stand before."""
+    """Return a source with those of its faults that can be switched."""
     source = text.encode()
     lines = text.splitlines(keepends=True)
     starts = [0]
@@ -91,7 +91,7 @@ def woven(text: str, faults: list[Fault]) -> str:
 
 
 def holder(node: Node | None, fault: Fault) -> Node | None:
-    """Return the innermost node that is written anew for a fault."""
+    """Return the innermost node that is rewritten for a fault."""
     while node is not None and node.type not in HOLDERS[fault.genre]:
         node = node.parent
     return node
@@ -177,7 +177,7 @@ def without(fields: Node, start: int) -> str:
 
 
 def function(node: Node, source: bytes, parts: dict[int, str], faults: list[Any]) -> str:
-    """Return a function that first sees whether to give a fault's value."""
+    """Return a function that first checks whether to return a fault's value."""
     body = node.child_by_field_name("body")
     assert body is not None
     early = "".join(f"if {fault.on} {{ return {fault.replacement}; }} " for fault, _ in faults)
@@ -185,7 +185,7 @@ def function(node: Node, source: bytes, parts: dict[int, str], faults: list[Any]
 
 
 def arm(node: Node, source: bytes, parts: dict[int, str], faults: list[Any]) -> str:
-    """Return an arm of a match that is passed over if its fault is on."""
+    """Return an arm of a match that is skipped if its fault is on."""
     pattern = node.child_by_field_name("pattern")
     assert pattern is not None
     condition = pattern.child_by_field_name("condition")

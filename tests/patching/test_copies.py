@@ -1,4 +1,4 @@
-"""Which names a copied part of a file has, and which of its attributes name no part."""
+"""Names in a copied part of a file, and attributes that are not names of parts."""
 
 import pytest
 
@@ -36,7 +36,7 @@ def test_a_transmission_and_its_actuator_have_names_of_their_own_as_copies() -> 
 
 
 def test_the_outermost_parts_about_a_wheel_are_copied_once() -> None:
-    """Other links and joints may name it inside, and stay; what holds neither is looked into."""
+    """Parts about other links and joints stay; parts with neither are searched."""
     text = (
         '<m><link name="hull"><note of="w"/></link><joint name="j"><child>w</child></joint>'
         '<link name="w"><part of="w"/></link><plugin><list>w</list><list>w v</list></plugin>'

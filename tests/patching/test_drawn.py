@@ -1,4 +1,4 @@
-"""Robots drawn at random, as files: whatever wheels they get are those that are read again."""
+"""Random robots as files: the wheels that they get are read again unchanged."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -25,14 +25,14 @@ def other_wheels(track: Any, rng: np.random.Generator) -> Any:
 
 
 def check(number: int, name: str, folder: Path) -> bool:
-    """Change a robot's wheels in its file; False where what was drawn has none to change so."""
+    """Change a robot's wheels in its file; False if the drawn robot has no such wheels."""
     rng = np.random.default_rng([26, number])
     path = folder / f"robot.{SUFFIX[name]}"
     getattr(drawn(number, wheels_only=True), f"to_{name}")(path, friction=0.6)
     reading = quietly(path, mesh="hull")
     track: Any = reading.robot.track
     if isinstance(track, c2d.LineOfWheels) and not track.as_track and track.count == 2:
-        return False  # a chassis without wheels of its own, or with its end wheels alone
+        return False  # a chassis without its own wheels, or with only its end wheels
     robot = replace(reading.robot, track=other_wheels(track, rng))
     arms = robot.flippers
     if arms is not None and arms.track is None:

@@ -1,4 +1,4 @@
-"""Which numbers of a file change with its wheels, by which factor, and what cannot be changed."""
+"""Numbers of a file that change with its wheels, their factors, and what cannot be changed."""
 
 import re
 from collections import defaultdict
@@ -42,7 +42,7 @@ def paths(text: str) -> list[tuple[str, str, str]]:
 
 
 def factors(old: str, new: str) -> dict[str, set[tuple[float, ...]]]:
-    """By what the numbers of a file were multiplied, of each element or attribute that differs."""
+    """Factors of the numbers of a file, for each element or attribute that differs."""
     changed: dict[str, set[tuple[float, ...]]] = defaultdict(set)
     before, after = paths(old), paths(new)
     assert [each[1] for each in before] == [each[1] for each in after]
@@ -197,7 +197,7 @@ def test_a_size_in_a_plugin_stays_where_its_wheels_become_unlike(
 def test_each_setting_that_counts_wheels_is_listed_for_manual_change(
     setting: str, tmp_path: Path
 ) -> None:
-    blank = 200 * "\n"  # a line is found by what all before it take
+    blank = 200 * "\n"  # a line is found from the lengths of all before it
     plugin = f"""{blank}<gazebo><plugin name="d" filename="d.so">
 <{setting}>4</{setting}></plugin></gazebo>"""
     reading = read(tmp_path, urdf(WHEELS, plugin), "urdf")
@@ -254,7 +254,7 @@ def test_an_error_of_the_new_file_is_not_one_of_the_old(tmp_path: Path) -> None:
 
 
 def test_a_keyframe_is_listed_for_manual_change_where_wheels_are_added(tmp_path: Path) -> None:
-    """MuJoCo takes it as it is: all joints behind the new one get the numbers of others."""
+    """MuJoCo reads it unchanged: all joints after the new one would get the numbers of others."""
     pytest.importorskip("mujoco")
     reading = with_key(tmp_path)
     line = 1 + reading.text[: reading.text.index("<key ")].count("\n")
@@ -360,7 +360,7 @@ def test_a_wheel_placed_in_a_frame_that_is_no_link_is_refused(tmp_path: Path) ->
 
 
 def test_wheels_of_a_nested_model_are_refused(tmp_path: Path) -> None:
-    """Their names in the text are not those of the model that was read."""
+    """Their names in the file differ from those of the model that was read."""
     outer = '<sdf version="1.9"><model name="outer"><link name="top"/><joint name="j" type="fixed">'
     outer += "<parent>top</parent><child>cart</child></joint>"
     inner = CART["sdf"].partition('<sdf version="1.9">')[2].replace("</sdf>", "</model></sdf>")

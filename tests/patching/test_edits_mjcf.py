@@ -23,7 +23,7 @@ from tests.patching.test_patch import SAID, on_chassis
 
 
 def mjcf(folder: Path, *changes: tuple[str, str]) -> c2d.Reading:
-    """The cart with replaced text, each of it once at least."""
+    """The cart with replaced texts, each of which must occur."""
     text = CART["xml"]
     for pattern, new in changes:
         text, count = re.subn(pattern, new, text)
@@ -56,7 +56,7 @@ OF_WHEELS = r"<velocity (joint=\"\w+_(?:rear|middle|front)_joint\") [^/]*/>"
 def test_a_servo_gets_the_changed_limits_that_it_has_of_its_class(
     gear: str, tmp_path: Path
 ) -> None:
-    """Those of the class stay: others have them, too. What a servo states itself is multiplied."""
+    """Those of the class stay, as others have them, too; a servo's own values are multiplied."""
     reading = mjcf(
         tmp_path,
         OF_CLASS,

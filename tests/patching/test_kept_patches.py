@@ -1,4 +1,4 @@
-"""Patches of files with a bit of everything, line by line: as kept in `kept`."""
+"""Patches of files with a bit of everything are, line by line, as in `kept`."""
 
 import re
 from collections.abc import Callable
@@ -28,7 +28,7 @@ def rounded(number: re.Match[str]) -> str:
 
 
 def moved(reading: c2d.Reading) -> c2d.Robot:
-    """The robot of a file whose placed wheels are others: one moved, and two new ones."""
+    """The robot of a file with other placed wheels: one moved, and two new ones."""
     track = reading.robot.track
     assert isinstance(track, c2d.HybridWheels)
     rear, _, front = track.placements
@@ -75,7 +75,7 @@ def test_a_patch_changes_the_lines_that_it_changed_before(name: str) -> None:
 
 @pytest.mark.parametrize("name", CASES)
 def test_removed_and_added_parts_of_a_patch_share_no_last_line(name: str) -> None:
-    """As where only the part above it is another one."""
+    """For example if only the part above it differs."""
     kept = (KEPT / f"{name}.diff").read_text(encoding="utf-8")
     for gone, new in re.findall(r"((?:^-.*\n)+)((?:^\+.*\n)+)", kept, re.MULTILINE):
         assert gone.splitlines()[-1][1:] != new.splitlines()[-1][1:]

@@ -1,4 +1,4 @@
-"""A file with other wheels: it reads as the other robot, and nothing else in it is changed."""
+"""A file with other wheels is read as the other robot, and nothing else in it changes."""
 
 import re
 import shutil
@@ -34,13 +34,13 @@ CARTS = ("cart.sdf", "cart.urdf", "cart.xml")
 
 
 def on_chassis(reading: c2d.Reading, count: int, radius: float | None = None) -> c2d.Robot:
-    """The robot of a file with so many wheels on its chassis; those of its flippers stay."""
+    """The robot of a file with a number of wheels on its chassis; those of its flippers stay."""
     robot = reading.robot
     return robot.with_track(c2d.LineOfWheels(count, wheel_radius=radius))
 
 
 def with_own_flippers(reading: c2d.Reading) -> c2d.Robot:
-    """The robot of a file, whose flippers have a track of their own."""
+    """The robot of a file, whose flippers have their own track."""
     robot = reading.robot
     assert robot.flippers is not None
     return replace(robot, flippers=replace(robot.flippers, track=c2d.LineOfWheels(3)))
@@ -159,7 +159,7 @@ def test_motors_of_a_class_are_refused_where_their_text_does_not_hold_their_limi
 
 @pytest.mark.parametrize("count", [2, 4, 5])
 def test_motors_of_some_wheels_keep_what_they_do_together(tmp_path: Path, count: int) -> None:
-    """The middle ones roll freely: what is copied or removed may have a motor or none."""
+    """The middle ones roll freely: copied or removed wheels may have a motor or not."""
     pytest.importorskip("mujoco")
     text = (FILES / "cart.xml").read_text()
     path = tmp_path / "some.xml"
@@ -175,7 +175,7 @@ def test_motors_of_some_wheels_keep_what_they_do_together(tmp_path: Path, count:
 def test_motors_that_share_evenly_still_do_with_other_wheels_on_one_carrier(
     name: str, tmp_path: Path
 ) -> None:
-    """As the simulator has it for the other robot: each wheel with an equal part of all torque."""
+    """As simulated for the other robot: each wheel has an equal part of the total torque."""
     if name == "mjcf":
         pytest.importorskip("mujoco")
     robot = c2d.robots.engineer(track=c2d.LineOfWheels(3))
@@ -249,7 +249,7 @@ def test_wheels_of_flippers_change_where_they_hang(name: str, tmp_path: Path) ->
 
 
 def without_wheels(text: str) -> str:
-    """All that a file holds but wheels of its chassis and motors of wheels, without spaces."""
+    """The content of a file without chassis wheels, motors of wheels and spaces."""
     root = ElementTree.fromstring(text)
     for motor in root.iter():
         if re.search(r"flipper_(root|tip)", motor.get("name", "") + motor.get("joint", "")):

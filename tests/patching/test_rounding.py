@@ -1,4 +1,4 @@
-"""What differs by rounding alone is no change of a file."""
+"""Differences by rounding are not changes of a file."""
 
 import pytest
 

@@ -1,9 +1,9 @@
 """Friction far above 1 in a concave corner, where it locks a smooth belt: by statics.
 
-Whatever the nose does there it runs farther than the tail, but a belt has one speed, so the tail
-has to slide. It cannot where the line from tail to nose is within its cone of friction: the harder
-the belt pulls, the harder the nose presses the tail down. So the friction that locks is the
-cotangent of the angle between that line and the ground. See "Belts in a corner" in docs/physics.md.
+Whatever the nose does there, it moves farther than the tail, but a belt has one speed, so the tail
+has to slide. It cannot if the line from tail to nose is within its cone of friction: the harder the
+belt pulls, the harder the nose presses the tail down. So the friction that locks is the cotangent
+of the angle between that line and the ground. See "Belts in a corner" in docs/physics.md.
 """
 
 import dataclasses
@@ -36,13 +36,13 @@ ground behind the corner."""
 
 
 def drive_force(torque: float) -> float:
-    """[-] Of both motors, in weights, with a torque [N m] per sprocket."""
+    """[-] Force of both motors in weights, for a torque [N m] per sprocket."""
     return 2.0 * torque / BELT_RADIUS / WEIGHT
 
 
 @dataclasses.dataclass(frozen=True)
 class Corner:
-    """Ground that falls by `down` [rad] and then rises, in all by a turn [rad], to some height."""
+    """Ground that falls by `down` [rad], then rises to some height, with a total turn [rad]."""
 
     turn: float = math.pi / 2.0
     height: float = 1.0
@@ -56,7 +56,7 @@ class Corner:
         return c2d.terrains.from_points(points, goal=1.0, friction=friction)
 
     def nose(self, angle: float = 0.0) -> Place:
-        """With the chassis at an angle [rad] to the ground behind."""
+        """The nose with the chassis at an angle [rad] to the ground behind."""
         axle = np.array([LENGTH * math.cos(angle), RADIUS + LENGTH * math.sin(angle)])
         normal = np.array([-math.sin(self.turn), math.cos(self.turn)])
         if axle[1] - RADIUS * normal[1] > self.height:  # on the edge
@@ -65,7 +65,7 @@ class Corner:
         return axle - RADIUS * normal, normal
 
     def weight(self, angle: float) -> Place:
-        """Where the weight acts, and its direction."""
+        """Point of application of the weight, and its direction."""
         ahead, above = 0.5 * LENGTH + ROBOT.center_of_mass[0], ROBOT.center_of_mass[1]
         c, s = math.cos(angle), math.sin(angle)
         place = np.array([ahead * c - above * s, RADIUS + ahead * s + above * c])
@@ -76,7 +76,7 @@ class Corner:
         return float(x / y)
 
     def force_to_climb(self, friction: float, angle: float = 0.0) -> float:
-        """[-] Of the motors, in weights, if the tail slides and the nose rolls; inf if locked."""
+        """[-] Force of the motors in weights, with sliding tail and rolling nose; inf if locked."""
         (nose, normal), (place, down) = self.nose(angle), self.weight(angle)
         tangent = right_of(normal)
         rows = np.zeros((3, 3))  # forces along x and y, moment; of the tail, the nose's two
@@ -86,7 +86,7 @@ class Corner:
         return float(friction * tail + nose_friction) if tail > 0.0 else math.inf
 
     def stall(self, friction: float, torque: float) -> float:
-        """[rad] The angle at which motors can raise the nose no further."""
+        """[rad] The angle beyond which motors cannot raise the nose."""
         force = drive_force(torque)
 
         def spare(angle: float) -> float:
@@ -95,7 +95,7 @@ class Corner:
         return float(brentq(spare, 0.0, 0.8)) if spare(0.0) < 0.0 else 0.0
 
     def threshold(self, torque: float) -> float:
-        """[-] The friction from which motors cannot raise the nose at all."""
+        """[-] The friction above which motors cannot raise the nose at all."""
         force = drive_force(torque)
         return float(
             brentq(
@@ -133,7 +133,7 @@ def entering(
 
 
 def risen(corner: Corner, run: c2d.Run) -> float:
-    """[rad] Of the chassis to the ground behind the corner."""
+    """[rad] Angle of the chassis to the ground behind the corner."""
     return run.metrics["max_angle"] + corner.down
 
 
@@ -173,7 +173,7 @@ def test_the_load_on_a_tail_that_slides_grows_without_limit_up_to_the_locking_fr
 
 
 def holds(corner: Corner, friction: float, force: float) -> bool:
-    """Whether tail and nose can hold that force of the motors [weights], by a linear program."""
+    """Whether tail and nose can hold a force of the motors [weights], by a linear program."""
     place, _ = corner.weight(0.0)
     bearings = [
         Bearing(
@@ -203,7 +203,7 @@ def test_beyond_the_locking_friction_a_belt_at_rest_holds_any_force(corner: Corn
 
 
 def quickest_rise(corner: Corner, friction: float, force: float) -> float:
-    """[rad/s^2] Of the nose from rest, by whatever Coulomb's law allows.
+    """[rad/s^2] Largest acceleration of the nose from rest that Coulomb's law allows.
 
     Tail, nose and the front end on the ground behind are open, stick or slide in all combinations;
     accelerations and forces are the unknowns of a linear program.
@@ -266,7 +266,7 @@ def test_beyond_the_locking_friction_coulombs_law_leaves_nothing_but_rest(corner
 def test_a_step_stops_a_belt_from_that_friction_on(corner: Corner, torque: float) -> None:
     friction = corner.threshold(torque)
     assert friction < corner.locking_friction()
-    # At 5 mm/s what remains of the speed carries the nose 0.3 % beyond.
+    # At 5 mm/s the remaining speed carries the nose 0.3 % beyond.
     climbs, stays = (
         c2d.simulate(entering(corner, share * friction, torque, speed=0.005), record="summary")
         for share in (0.997, 1.004)
@@ -312,7 +312,7 @@ def test_in_a_valley_a_belt_locks_by_the_angle_through_which_that_turns(
         expected = corner.stall(friction, 1000.0)
         assert (expected > 0.0) == (friction < locking)
         assert run.outcome == "stalled"
-        # Contacts that bear a hundred weights give way by 30 um.
+        # Contacts that bear a hundred weights yield by 30 um.
         assert risen(corner, run) == pytest.approx(expected, abs=math.radians(0.06))
 
 
@@ -354,12 +354,12 @@ def test_a_locked_belt_rests_in_the_one_equilibrium_of_its_two_ends(
     for i, (arm, n) in enumerate(zip(arms, normals, strict=True)):
         t = right_of(n)
         rows[:, 2 * i] = *n, cross(arm, n), 0.0
-        rows[:, 2 * i + 1] = *t, cross(arm, t), 1.0  # the motors carry what is along the belt
+        rows[:, 2 * i + 1] = *t, cross(arm, t), 1.0  # the motors carry the component along the belt
     expected = np.linalg.solve(rows, [0.0, WEIGHT, 0.0, WEIGHT * force])
     found = np.ravel([loads, frictions], order="F")
     assert found == pytest.approx(expected, abs=1e-6 * WEIGHT * max(force, 1.0))
     assert np.all(loads > 0.0)
-    # No contact has to grip by more than the locking friction, however large the torque.
+    # No contact needs more than the locking friction, however large the torque.
     assert np.abs(frictions / loads).max() < 1.001 * corner.locking_friction()
     speeds = run.contacts["surface_speed"][run.contacts["time"] == run.time[-1]]
     assert np.abs(speeds).max() < 1e-6
@@ -397,7 +397,7 @@ def test_a_belt_that_arrives_at_full_speed_is_stalled_too() -> None:
 
 
 def test_wheels_with_motors_of_their_own_do_not_lock() -> None:
-    """Each turns as fast as it has to; on one motor for all they lock like a belt."""
+    """Each turns as fast as necessary; on a common motor they lock like a belt."""
     robot = ROBOT.with_track(c2d.LineOfWheels(3))
     ends = []
     for sharing in ("track", "wheel"):

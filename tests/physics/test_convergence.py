@@ -1,7 +1,7 @@
-"""Success rates do not move when the solver is ten times as accurate.
+"""Success rates do not change if the solver is ten times as accurate.
 
-Cells are chosen where the rate lies between 5 and 95 %: there a robot only just gets over, and any
-error of the discretisation shows as a shift of the rate. `make soak` runs all of them.
+Cells have rates between 5 and 95 %, where robots only just clear and any error of the
+discretisation shifts the rate. `make soak` runs all of them.
 """
 
 import numpy as np
@@ -38,7 +38,7 @@ CELLS: list[tuple[Track, float, float]] = [
     (c2d.GrouserBeltTrack(), 0.9, 0.090),
 ]
 
-# The same with the arms in front: higher than any robot gets without.
+# The same with arms in front: higher than any robot gets without them.
 ON_ARMS: list[tuple[Track, float, float]] = [
     (c2d.BeltTrack(), 0.6, 0.105),
     (c2d.BeltTrack(), 0.9, 0.115),
@@ -49,7 +49,7 @@ def ensemble(track: Track, friction: float, height: float, solver: c2d.Solver) -
     """Runs with the same draws of approach, phase, speed and friction for every solver."""
     has_arms = (track, friction, height) in ON_ARMS
     robot = c2d.robots.engineer(flippers="built" if has_arms else None, track=track)
-    robot = robot.without_rotors()  # with which rates lie elsewhere
+    robot = robot.without_rotors()  # with which rates are different
     gait = c2d.Climb() if has_arms else None
     scenarios = []
     for repeat in range(RUNS):
@@ -69,7 +69,7 @@ def ensemble(track: Track, friction: float, height: float, solver: c2d.Solver) -
 
 @pytest.mark.soak
 def test_rates_and_poses_do_not_move_at_a_tenth_of_the_accuracy() -> None:
-    # One of them moves beyond its interval by chance in one of twenty such tests.
+    # By chance, one of them leaves its interval in one of twenty such tests.
     cells = CELLS + ON_ARMS
     confidence = 1.0 - 0.05 / len(cells)
     default = c2d.Solver()
@@ -95,7 +95,7 @@ def test_rates_and_poses_do_not_move_at_a_tenth_of_the_accuracy() -> None:
         )
         shifts.append(shift)
         holds.append(abs(shift) < 0.05 or low <= 0.0 <= high)
-        # Grousers keep a robot that has stopped moving to and fro.
+        # Grousers keep a stopped robot moving to and fro.
         has_grousers = isinstance(track, c2d.GrouserBeltTrack) or (
             getattr(getattr(track, "wheel", None), "kind", "") == "gear"
         )

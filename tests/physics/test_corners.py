@@ -1,4 +1,4 @@
-"""Wheels that roll up a face go on over the corner at its end, however long steps are."""
+"""Wheels that roll up a face continue over the corner at its end, however long steps are."""
 
 import numpy as np
 import pytest
@@ -6,7 +6,7 @@ import pytest
 import crawler2d as c2d
 
 NOT_ALIKE = 0.05  # [rad/s]
-IMPACTS = 10  # samples: an impact of a millisecond earlier is no fault
+IMPACTS = 10  # samples: an impact a millisecond earlier is not a fault
 
 
 @pytest.mark.parametrize("height", [0.05, 0.06])
@@ -28,5 +28,5 @@ def test_small_wheels_stay_on_the_corner(height: float) -> None:
     shared = min(len(long.time), len(short.time))
     apart = np.abs(long.angular_velocity[:shared] - short.angular_velocity[:shared])
     assert shared > 3000
-    # Where the corner fell away below a wheel for a few milliseconds, it was 384 and 537.
+    # With a corner that vanished below a wheel for a few milliseconds, it was 384 and 537.
     assert np.count_nonzero(apart > NOT_ALIKE) <= IMPACTS

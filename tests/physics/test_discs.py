@@ -1,4 +1,4 @@
-"""Wheels and grousers all round discs, against a walk round arcs and tangents that is made here."""
+"""Wheels and grousers all round discs, against an independent walk round arcs and tangents."""
 
 import dataclasses
 import math
@@ -58,7 +58,7 @@ class Loop:
         return sum(arcs) + sum(self.runs)
 
     def at(self, way: float) -> tuple[float, float]:
-        """[m] The place so far from the rear end of the lower run."""
+        """[m] The point at a distance from the rear end of the lower run."""
         for i, (x, y, radius) in enumerate(self.discs):
             arc, start = radius * self.turns[i], self.normals[i - 1]
             if way < arc:
@@ -146,6 +146,6 @@ def test_a_closed_track_runs_round_the_wheels_on_discs() -> None:
         _core.geometry(Scenario(robot, c2d.terrains.flat()).to_json())["carriers"][0]["envelope"]
         for robot in (closed, belt)
     ]
-    # Wheels fill the outline but for the corners between two of them.
+    # Wheels fill the outline except for the corners between them.
     for low, high in zip(*([s.min(axis=0), s.max(axis=0)] for s in shapes), strict=True):
         assert low == pytest.approx(high, abs=5e-3)

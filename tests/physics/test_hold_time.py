@@ -1,4 +1,4 @@
-"""How long one has to wait at a stop before it counts: success against the time that is held."""
+"""The time after which a stop counts: success against the hold time."""
 
 import itertools
 from collections.abc import Callable
@@ -50,7 +50,7 @@ def scenarios(track: Any, repeats: int) -> list[Scenario]:
 
 
 def longest_stop(run: c2d.Run) -> float:
-    """[s] Of the stops before the goal was reached."""
+    """[s] Longest stop before the goal was reached."""
     stops = run.events["kind"] == "stop"
     lengths = np.asarray(run.events["end"] - run.events["start"])[stops]
     return float(lengths.max(initial=0.0))
@@ -85,5 +85,5 @@ def test_rates_do_not_depend_on_the_hold_time_of_a_stop(
         moved.append(rates[HOLDS.index(30.0)] - rates[HOLDS.index(10.0)])
     lines.append(f"from 10 s to 30 s at most {max(moved):.3f}")
     say("\n  ".join(lines))
-    assert max(stood) > HOLDS[-1]  # so that stops are seen at all
+    assert max(stood) > HOLDS[-1]  # so that stops are observed at all
     assert max(moved) <= 0.05

@@ -18,7 +18,7 @@ PLACEMENTS = ((-SPACING, 0.0, RADIUS), (0.0, 0.0, RADIUS), (SPACING, 0.0, RADIUS
 APPROACH = 0.1
 MIDDLE = -APPROACH - RADIUS - SPACING  # [m] x of the middle wheel at the start
 THICKNESS, HEIGHT = 0.02, 0.01
-# [m] The belt that pieces are cut at runs this far inside the wheels' circles.
+# [m] The belt that bounds pieces is this far inside the wheels' circles.
 MARGIN = c2d.SeizureCriteria().intrusion_depth
 POST_AREA = THICKNESS * (HEIGHT - MARGIN)
 WEDGE_AREA = 0.5 * THICKNESS / HEIGHT * (HEIGHT - MARGIN) ** 2
@@ -70,11 +70,11 @@ def test_level_ground_is_outside_the_track() -> None:
 def test_without_a_least_depth_the_ground_under_all_wheels_is_one_piece() -> None:
     criteria = c2d.SeizureCriteria(intrusion_depth=0.0)
     sim = c2d.Simulation(standing(post(REAR), wedge(FRONT), criteria=criteria))
-    sim.advance(0.5)  # until the wheels have sunk in
+    sim.advance(0.5)  # until the wheels have settled
     inside = sim.intrusions()
     assert inside["edges"].tolist() == [(0, 1, 2, 3, 4, 5, 6)]
     whole = THICKNESS * HEIGHT * 1.5
-    assert inside["area"] == pytest.approx([whole], rel=0.01)  # and the sunk ground
+    assert inside["area"] == pytest.approx([whole], rel=0.01)  # and the penetrated ground
 
 
 def test_no_area_is_below_zero() -> None:
@@ -103,7 +103,7 @@ def test_a_post_in_a_slot_is_as_deep_and_large_inside_as_it_is(
     assert inside["area"] == pytest.approx([POST_AREA])
     assert inside["y"] == pytest.approx([HEIGHT])
     assert abs(inside["x"][0] - slot) <= 0.5 * THICKNESS + 1e-12
-    assert inside["edge"].tolist() == [1]  # of equally deep ones the left
+    assert inside["edge"].tolist() == [1]  # the left of equally deep ones
     assert inside["edges"].tolist() == [(1, 2)]
 
 

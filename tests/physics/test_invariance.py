@@ -1,4 +1,4 @@
-"""What a stop is called depends neither on the solver's steps nor on how the ground is written."""
+"""The kind of stop depends neither on the solver's steps nor on how the ground is written."""
 
 import dataclasses
 import itertools
@@ -15,7 +15,7 @@ from tests.census.strata import draw
 
 SHIFT = 10.0  # [m]
 PIECE = 0.03  # [m] of a face that is cut finer
-ELSEWHERE = 1e-3  # [m] A robot this far off has come to another stop
+ELSEWHERE = 1e-3  # [m] A robot this far away is at another stop
 JITTER = 1e-7  # [m] points on a line would be merged
 
 
@@ -119,6 +119,6 @@ def test_the_outcome_of_a_stop_does_not_depend_on_accuracy_or_cutting_of_the_gro
     lines.append(f"{flips} stationary ones called otherwise")
     say("\n  ".join(lines))
     assert flips == 0
-    # Three wheels on one face share their load anew when it is off by 0.1 um; where each has a
-    # motor of its own, their traction follows.
+    # Three wheels on one face redistribute their load if it is off by 0.1 um; if each has its own
+    # motor, their traction follows.
     assert elsewhere <= 0.01 * count * len(VARIANTS)

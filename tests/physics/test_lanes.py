@@ -1,4 +1,4 @@
-"""Two lanes: what each track and the belly meet, as tables, rates and refusals."""
+"""Two lanes: the ground of each track and the belly, in tables, rates and refusals."""
 
 import math
 from collections.abc import Callable
@@ -12,7 +12,7 @@ from crawler2d import _core
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.sweeps.statistics import newcombe
 
-# Heights at which some robots get over and some do not are those without rotors.
+# Heights at which some robots clear and some do not, without rotors.
 ENGINEER = c2d.robots.engineer(flippers=None).without_rotors()
 SIDES = {"both": 0, "left": 1, "right": 2, "middle": 3}
 
@@ -118,7 +118,7 @@ def test_a_stop_on_one_lane_is_seized_there() -> None:
 
 
 def nearly(terrain: Any) -> c2d.terrains.lanes:
-    """The same under both tracks, but a hair lower beyond everything on the right."""
+    """The same under both tracks, but minimally lower beyond everything on the right."""
     points = [tuple(point) for point in lanes_of(terrain)[0]]
     points[0], points[-1] = (-3.0, 0.0), (3.0, points[-1][1])
     further = [*points[:-1], (3.001, points[-1][1])]
@@ -145,7 +145,7 @@ def nearly(terrain: Any) -> c2d.terrains.lanes:
 def test_lanes_that_are_alike_give_the_rates_of_one(
     track: Any, height: float, friction: float, count: int
 ) -> None:
-    """At a height where some robots get over and some do not; approach and height drawn."""
+    """At a height where some robots clear and some do not; approach and height drawn."""
     rng = np.random.default_rng(5)
     draws = list(zip(rng.uniform(0.05, 0.15, count), rng.uniform(0.95, 1.05, count), strict=True))
 

@@ -1,4 +1,4 @@
-"""How far a track runs for the way of its chassis: by closed form, without slip."""
+"""Travel of a track for a distance of its chassis, in closed form, without slip."""
 
 import math
 from typing import Any
@@ -9,14 +9,14 @@ import pytest
 import crawler2d as c2d
 from crawler2d.parameters.terrain import Points
 
-# A rotor keeps a belt going through an impact, so that it slips by 2 mm more on a ridge.
+# A rotor keeps a belt moving through an impact, so that it slips by 2 mm more on a ridge.
 ENGINEER = c2d.robots.engineer(flippers=None).without_rotors()
 RADIUS, AXLES = ENGINEER.outline.front_radius, ENGINEER.outline.axle_distance
 BELT, GROUSERS, WHEELS = c2d.BeltTrack(), c2d.GrouserBeltTrack(), c2d.LineOfWheels(9)
 
 
 def arc(radius: float, *, upwards: bool) -> Points:
-    """A cap or a hollow of so large a radius [m], 1 rad long, in facets of 0.01 rad."""
+    """A cap or a hollow with a radius [m], 1 rad long, in facets of 0.01 rad."""
     angles = np.linspace(-0.5, 0.5, 101)
     x = radius * (np.sin(angles) + math.sin(0.5))
     y = radius * (np.cos(angles) - math.cos(0.5)) * (1.0 if upwards else -1.0)
@@ -26,7 +26,7 @@ def arc(radius: float, *, upwards: bool) -> Points:
 
 
 def between(track: Any, ground: Any, begin: float, end: float) -> tuple[float, float, float]:
-    """Way of the track, way of the chassis, and its turn, from one chassis angle to another."""
+    """Distances of track and chassis, and the turn, between two chassis angles."""
     drive = c2d.Drive(speed=0.1)
     run = c2d.simulate(ENGINEER.with_track(track), ground, drive=drive, duration=60.0)
     assert run.outcome == "cleared"
@@ -55,7 +55,7 @@ def test_over_a_crest_the_track_runs_less_by_its_radius_times_the_turn(
 @pytest.mark.parametrize("track", [BELT, WHEELS], ids=lambda track: track.kind)
 @pytest.mark.parametrize("radius", [1.0, 2.0])
 def test_in_a_hollow_a_smooth_track_runs_more_than_the_way(track: Any, radius: float) -> None:
-    """Both ends roll inside a circle, the chassis between them is a chord nearer to its middle."""
+    """Both ends roll inside a circle; the chassis between them is a chord closer to its centre."""
     run, way, _ = between(track, arc(radius, upwards=False), -0.25, 0.25)
     expected = radius / math.sqrt((radius - RADIUS) ** 2 - AXLES**2 / 4.0)
     assert run / way == pytest.approx(expected, rel=5e-4)  # facets of 0.01 rad

@@ -1,4 +1,4 @@
-"""Copies of a robot of another size or mass: none is refused, all move as the original does."""
+"""Copies of a robot with another size or mass are accepted, and move like the original."""
 
 import copy
 import json
@@ -57,7 +57,7 @@ CASES: dict[tuple[str, Any], Scenario] = {
     ),
     ("flippers", 0.2): CLIMB,
 }
-# Chains take longer than all others together: by default they have one step.
+# Chains take longer than all others together; by default they have one step.
 LONG = [case for case in CASES if case[0].startswith("chain") and case[1] > 0.05]
 ids = pytest.mark.parametrize(
     "case",
@@ -92,7 +92,7 @@ def scaled(scenario: Scenario, length: float, mass: float, time: float) -> Scena
 
 @cache
 def original(case: tuple[str, Any]) -> c2d.Run:
-    """The run of a case as it is, which several tests compare with."""
+    """The original run of a case, for comparison in several tests."""
     return c2d.simulate(CASES[case])
 
 
@@ -101,7 +101,7 @@ def original(case: tuple[str, Any]) -> c2d.Run:
 def test_a_copy_of_another_size_runs_and_ends_as_the_original(
     case: tuple[str, Any], size: float
 ) -> None:
-    """By Froude: where speeds and times grow with the root of the size, gravity stays the same."""
+    """Froude's law: if speeds and times grow with the root of the size, gravity stays the same."""
     time = math.sqrt(size)
     with warnings.catch_warnings():
         warnings.simplefilter("error", c2d.ScenarioWarning)
@@ -112,7 +112,7 @@ def test_a_copy_of_another_size_runs_and_ends_as_the_original(
     assert np.isfinite(list(metrics.values())).all()
     # Lengths and times of the solver itself, such as those of its shortest step, are not scaled.
     assert other.metrics["time"] / time == pytest.approx(run.metrics["time"], rel=0.05)
-    # Which grouser takes the edge is chance: a robot with grousers may be one farther or less far.
+    # Which grouser grips the edge is chance: a robot may be one grouser farther or less far.
     plain = case[0] in ("belt", "wheels", "small wheels", "force")
     apart = 0.03 if plain else BARE.outline.grouser_pitch
     assert other.metrics["final_x"] / size == pytest.approx(run.metrics["final_x"], abs=apart)
@@ -124,7 +124,7 @@ def test_a_copy_of_another_size_runs_and_ends_as_the_original(
 def test_robots_of_any_mass_move_alike_to_the_last_bit(
     case: tuple[str, Any], factor: float
 ) -> None:
-    """Limits of mass are those of float64: nothing is lost near them."""
+    """Limits of mass come from float64, and no digits are lost near them."""
     run = original(case)
     heavy = scaled(CASES[case], 1.0, factor, 1.0)
     other = c2d.simulate(heavy)

@@ -35,7 +35,7 @@ def test_a_track_that_slips_accelerates_with_the_friction_under_it(
     begin, end = np.searchsorted(run.time, (0.019, 0.059))
     gained = run.velocity[end, 0] - run.velocity[begin, 0]
     rate = gained / (run.time[end] - run.time[begin])
-    # mu g while it slips; contacts as soft as these let through some 0.1 %.
+    # mu g while it slips; contacts as soft as these change it by some 0.1 %.
     assert rate == pytest.approx(friction * 9.81, rel=2e-3)
     assert run.velocity[end, 0] < 0.2, "it still slips"
 

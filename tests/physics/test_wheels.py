@@ -1,4 +1,4 @@
-"""The wheels of a track model: where they sit, how they start, what they weigh."""
+"""The wheels of a track model: positions, initial angles and masses."""
 
 import dataclasses
 import math
@@ -38,11 +38,11 @@ def centers(robot: c2d.Robot) -> np.ndarray[Any, Any]:
     return np.column_stack([wheels["x"], wheels["y"]])
 
 
-# Where the wheels sit
+# Positions
 
 
 def depth_inside(robot: c2d.Robot, point: np.ndarray[Any, Any]) -> float:
-    """[m] From a point to the outline: the least over the normals where that least can be."""
+    """[m] Distance of a point from the outline: the least over all candidate normals."""
     o = robot.outline
     ends = np.array([[-0.5 * o.axle_distance, 0.0], [0.5 * o.axle_distance, 0.0]])
     radii = np.array([o.rear_radius, o.front_radius])
@@ -60,7 +60,7 @@ def ring(robot: c2d.Robot, count: int, radius: float | None = None) -> c2d.Robot
 
 
 def on_path_of_centers(robot: c2d.Robot, radius: float, share: float) -> tuple[float, float]:
-    """[m] Where wheels can sit, a share of the way round: rear arc, top, front arc, lower run."""
+    """[m] Position of a wheel at a fraction of the path: rear arc, top, front arc, lower run."""
     o = robot.outline
     half, rear, front = 0.5 * o.axle_distance, o.rear_radius - radius, o.front_radius - radius
     lean = math.acos((rear - front) / o.axle_distance)
@@ -210,7 +210,7 @@ def test_a_gear_takes_its_grousers_from_the_robot(radius: float, height: float, 
     assert distance.min() == pytest.approx(radius - height, rel=1e-12)
 
 
-# What the wheels weigh
+# Masses
 
 
 MODELS: dict[str, Any] = {
@@ -266,7 +266,7 @@ def test_both_sides_are_listed_and_are_alike(name: str) -> None:
     assert set(wheels["carrier"]) == {"chassis"}
     for column in set(wheels) - {"side"}:
         assert wheels[column][:half].tolist() == wheels[column][half:].tolist()
-    # What circulates, of both sides together.
+    # The circulating mass of both sides together.
     circulating = (wheels["moment_of_inertia"] / wheels["radius"] ** 2).sum()
     assert circulating == pytest.approx(ROBOT.track_mass)
 

@@ -1,4 +1,4 @@
-"""What pictures and pages show, read back: arrays of a page, distances from what is drawn."""
+"""Reads pictures and pages back: arrays of a page, distances from drawn lines."""
 
 import base64
 import json
@@ -27,14 +27,14 @@ def unpacked(column: dict[str, Any]) -> Any:
 
 
 def placed(points: Any, pose: Any) -> Any:
-    """Points of a frame, shape (n, 2), where they are if that has a pose."""
+    """Transform points, shape (n, 2), from a frame with a pose."""
     *origin, angle = pose
     turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
     return points @ turn.T + origin
 
 
 class PageRobot:
-    """The robot of a page as its scripts place it."""
+    """The robot of a page, as positioned by its scripts."""
 
     def __init__(self, page: Any) -> None:
         self.robot, self.frames = page["robot"], page["frames"]
@@ -48,13 +48,13 @@ class PageRobot:
         return float(self._columns[entry["column"]][frame] if isinstance(entry, dict) else entry)
 
     def pose(self, carrier: Any, frame: int) -> list[Any]:
-        """Poses of the frames that lie within each other, the innermost first."""
+        """Poses of nested frames, the innermost first."""
         names = ("x", "y", "angle")
         of_chassis = [column[frame] for column in self._chassis]
         return [[self.value(carrier[name], frame) for name in names], of_chassis]
 
     def outlines(self, frame: int) -> list[Any]:
-        """[m] Outlines of all that is drawn, over ground, and the numbers of the bodies."""
+        """[m] Outlines of everything drawn, in the world frame, and the numbers of the bodies."""
         found = []
         for carrier in self.carriers:
             frames = self.pose(carrier, frame)
@@ -69,7 +69,7 @@ class PageRobot:
         return found
 
     def grousers(self, circuit: Any, frame: int) -> list[Any]:
-        """Outlines and poses of what a belt carries, as `Circuit` of carrier.js."""
+        """Outlines and poses of the grousers of a belt, like `Circuit` of carrier.js."""
         if circuit is None:
             return []
         poses = np.column_stack([unpacked(circuit[name]) for name in ("x", "y", "angle")])

@@ -1,4 +1,4 @@
-"""Films of runs: how many frames they have, how long they take, and what the last one shows."""
+"""Films of runs: number of frames, duration, and content of the last frame."""
 
 import shutil
 import struct
@@ -91,7 +91,7 @@ def test_the_robot_moves_in_a_gif_and_white_stays_white(seized: c2d.Run, tmp_pat
 
 
 def test_ten_seconds_of_a_gif_are_at_most_a_few_megabytes(tmp_path: Path) -> None:
-    """The worst second: as many gears as there can be turn close to the viewer."""
+    """The worst second: the largest number of gears turn close to the viewer."""
     track = c2d.CircumferentialWheels(24, wheel=c2d.GearWheel(grouser_count=8))
     run = c2d.simulate(ROBOT.with_track(track), c2d.terrains.flat(length=9.0), duration=1.0)
     path = run.animate(tmp_path / "run.gif", follow=True)

@@ -1,4 +1,4 @@
-"""Robots and scenarios in a notebook and as text."""
+"""Robots and scenarios in notebooks and as text."""
 
 import dataclasses
 import subprocess

@@ -1,4 +1,4 @@
-"""Replays and sliders in a live notebook, without one: what they hold, and what a change does."""
+"""Replays and sliders for notebooks, tested without one: contents, and effects of changes."""
 
 import sys
 from typing import Any

@@ -1,4 +1,4 @@
-"""Films of several runs: one time, one scale, a title for each, and nothing half written."""
+"""Films of several runs: common time and scale, a title for each, and no partial files."""
 
 from pathlib import Path
 from typing import Any
@@ -20,7 +20,7 @@ TRACKS: dict[str, Any] = {
 
 @pytest.fixture(scope="module")
 def pair() -> list[c2d.Run]:
-    """A belt that is over the step after 3 s, and wheels that go on for two seconds more."""
+    """A belt that has cleared the step after 3 s, and wheels that take two seconds longer."""
     return [
         c2d.simulate(ROBOT.with_track(TRACKS["belt"]), STEP, duration=3.0),
         c2d.simulate(ROBOT.with_track(TRACKS["wheels"]), STEP, duration=5.0),
@@ -164,7 +164,7 @@ def test_a_film_of_two_has_as_many_frames_as_the_longer_run(
     with Image.open(path) as image:
         assert image.size[0] == (600 if side_by_side else 300)
         assert image.info["comment"].decode() == "; ".join(run.provenance for run in pair)
-        assert getattr(image, "n_frames", 1) > 5  # equal ones are one
+        assert getattr(image, "n_frames", 1) > 5  # equal ones are merged
     assert list(tmp_path.iterdir()) == [path]
 
 

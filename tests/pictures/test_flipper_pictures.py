@@ -1,4 +1,4 @@
-"""Flippers in pictures: that they are drawn where the contacts of a run say that they are."""
+"""Flippers in pictures are drawn where the contacts of a run are."""
 
 from typing import Any
 
@@ -47,7 +47,7 @@ def lifted() -> c2d.Run:
 
 
 def drawn_lines(run: c2d.Run, time: float) -> list[Any]:
-    """[m] Of the only pose that is drawn."""
+    """[m] Lines of the only pose that is drawn."""
     _, ax = plt.subplots()
     run.plot(ax, time=time)
     return [np.array(line.get_xydata()) for line in ax.get_lines()]
@@ -61,7 +61,7 @@ def test_contacts_lie_on_the_flippers(climb: c2d.Run) -> None:
     for row in rows[:: len(rows) // 200]:
         sample = int(np.searchsorted(climb.time, table["time"][row]))
         place = np.array([table["x"][row], table["y"][row]])
-        # In half a step what touches moves by 0.2 mm, and an arc is drawn in sides of 3 degrees.
+        # In half a step the touching part moves by 0.2 mm; an arc is drawn in sides of 3 degrees.
         assert distance(place, scene.outline(table["body"][row], sample)) < 5e-4
 
 
@@ -171,7 +171,7 @@ def test_an_intrusion_is_in_the_belt_of_what_the_page_says(
 
 @pytest.mark.filterwarnings("ignore:robot.flippers.tip_radius has no effect")
 def test_large_wheels_at_the_tips_of_arms_fit_into_the_view() -> None:
-    """Of 0.34 m long arms with wheels of 0.12 m; their tips are smaller without wheels."""
+    """Arms of 0.34 m with wheels of 0.12 m; their tips are smaller without wheels."""
     arms = c2d.Flippers(
         length=0.34, root_radius=0.064, tip_radius=0.037, mass=0.775, torque_limit=30.0
     )

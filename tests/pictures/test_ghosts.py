@@ -1,4 +1,4 @@
-"""Where the robot ended in each trial, in plots and on pages."""
+"""Final poses of trials in plots and on pages."""
 
 import json
 import re
@@ -21,7 +21,7 @@ RUNS = {
         c2d.terrains.step(0.5, friction=0.4),
         duration=8.0,
     ),
-    # Coarse, with few shoes: where it ends does not matter here.
+    # Coarse, with few shoes: its end does not matter here.
     "chain": c2d.Scenario(
         ROBOT.with_track(c2d.SegmentalTrack(shoe_count=22)),
         c2d.terrains.step(0.3, friction=0.4),
@@ -70,7 +70,7 @@ def test_a_plot_shows_the_ends_of_the_trials_that_freed_the_robot(run: c2d.Run) 
     bare = run.plot(trials=False).get_legend()
     assert bare is not None
     assert not any("trial" in text.get_text() for text in bare.get_texts())
-    # Before its end there is nothing to compare with.
+    # Before its end there is nothing for comparison.
     early = run.plot(time=1.0).get_legend()
     assert early is not None
     assert not any("trial" in text.get_text() for text in early.get_texts())

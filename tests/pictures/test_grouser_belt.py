@@ -1,4 +1,4 @@
-"""The belt with grousers: what tables and pictures show of it, and that nothing seizes it."""
+"""The belt with grousers in tables and pictures, and that it does not seize."""
 
 from typing import Any
 
@@ -62,7 +62,7 @@ def test_a_slower_belt_runs_as_a_faster_one_on_the_level() -> None:
             drive=c2d.Drive(speed=speed),
             duration=9.0,
         )
-        # How far it got: the speeds of single samples scatter by 2 % where grousers strike.
+        # Distance: speeds of single samples scatter by 2 % when grousers strike.
         late = np.searchsorted(run.time, [7.0, 9.0])
         seconds = np.diff(run.time[late])
         assert np.diff(run.position[late, 0]) / seconds == pytest.approx(speed, rel=0.01)

@@ -1,4 +1,4 @@
-"""Colours stay apart for those who lack one kind of cone, and lines differ without colours, too."""
+"""Colours are distinguishable without one type of cone, and lines even without colours."""
 
 import itertools
 import re
@@ -46,7 +46,7 @@ WHITE = [0.9505, 1.0, 1.089]
 
 
 def lab(color: str, sight: str) -> NDArray[np.float64]:
-    """CIELAB coordinates of a colour as it is seen."""
+    """CIELAB coordinates of a colour as perceived."""
     given = np.array(colors.to_rgb(color))
     linear = np.where(given <= 0.04045, given / 12.92, ((given + 0.055) / 1.055) ** 2.4)
     x, y, z = np.array(XYZ) @ np.clip(np.array(SIGHTS[sight]) @ linear, 0.0, 1.0) / WHITE
@@ -64,7 +64,7 @@ of_each_sight = pytest.mark.parametrize("sight", SIGHTS)
 
 
 def test_distances_are_those_of_cielab() -> None:
-    # White has L* = 100 and black 0; what a missing cone would tell apart is not told apart.
+    # White has L* = 100 and black 0; colours that only the missing cone distinguishes are equal.
     assert closest(["white", "black"], "usual") == pytest.approx(100.0, abs=0.1)
     assert closest(["#ff7f0e", "#2ca02c"], "usual") > 100.0
     assert closest(["#ff7f0e", "#2ca02c"], "protanopia") < 5.0

@@ -1,4 +1,4 @@
-"""Pictures: what is drawn where; whether it is beautiful is for people to judge."""
+"""Pictures: contents and positions; whether they are beautiful is for people to judge."""
 
 from typing import Any
 
@@ -200,7 +200,7 @@ def test_the_title_says_why_the_robot_stopped() -> None:
     title, *why = side.get_title(loc="left").splitlines()
     assert title == run.title
     assert " ".join(why) == str(run.diagnosis)
-    # In a small picture the sentence would be all that one sees.
+    # In a small picture, the sentence would fill everything.
     _, axes = plt.subplots(1, 3, figsize=(9.0, 4.0))
     assert run.plot(axes[1]).get_title(loc="left").replace("\n", " ") == run.title
     for ax in (side, axes[1]):

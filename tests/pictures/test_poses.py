@@ -1,4 +1,4 @@
-"""Where the bodies of a robot were: the same in contacts, in `Run.poses`, on pages."""
+"""Positions of a robot's bodies agree in contacts, in `Run.poses` and on pages."""
 
 from typing import Any
 
@@ -55,8 +55,8 @@ def test_contacts_lie_on_the_outline_of_their_body(run: c2d.Run) -> None:
         point = np.array([table["x"][row], table["y"][row]])
         far.append(distance(point, np.vstack([outline, outline[:1]])) - table["penetration"][row])
     assert len(far) > 100
-    # Contacts are found half a step before: what touches has moved by 0.2 mm since, a shoe that
-    # swings by more. An arc of a belt is drawn in sides of 3 degrees.
+    # Contacts are found half a step earlier: touching parts have moved by 0.2 mm since then, a
+    # swinging shoe by more. An arc of a belt is drawn in sides of 3 degrees.
     assert np.quantile(far, 0.95) < 3e-4
     assert max(far) < 1.5e-3
 
@@ -70,7 +70,7 @@ def test_bodies_are_numbered_as_in_the_contacts(run: c2d.Run) -> None:
 
 
 def test_angles_count_full_turns(run: c2d.Run) -> None:
-    # No body turns by half a turn within a step of 1 ms, and so none must jump by a whole one.
+    # No body turns by half a turn within a step of 1 ms, so none may jump by a full one.
     assert np.abs(np.diff(run.poses[..., 2], axis=0)).max() < 0.5
 
 
@@ -167,8 +167,8 @@ def test_wheels_within_a_belt_turn_with_it_on_an_arm_that_turns() -> None:
     on_arm = within & (bodies["carrier"] == "front flipper")
     sprocket = on_arm & (bodies["kind"] == c2d.BodyKind.SPROCKET)
     idler = on_arm & (bodies["kind"] == c2d.BodyKind.IDLER)
-    # That on the pivot turns with the chassis, but for what the drive gives way; the other one
-    # rolls on the belt.
+    # The wheel on the pivot turns with the chassis, except for the yielding of the drive; the other
+    # one rolls on the belt.
     assert turned[sprocket].max() < 0.1
     assert turned[idler].min() > 0.5
 

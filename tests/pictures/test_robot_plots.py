@@ -1,4 +1,4 @@
-"""Robots and scenarios by themselves: what their side views show, and where."""
+"""Side views of robots and scenarios: their contents and positions."""
 
 import dataclasses
 from itertools import combinations
@@ -26,7 +26,7 @@ ROBOTS = {
 
 
 def words(ax: Any) -> list[Text]:
-    """All that is written: title, dimensions, legend, names of the axes and their ticks."""
+    """All texts: title, dimensions, legend, names of the axes and their ticks."""
     found = [*ax.texts, *ax.get_legend().get_texts(), ax.xaxis.label, ax.yaxis.label, title_of(ax)]
     for axis, limits, row in ((ax.xaxis, ax.get_xlim(), 0), (ax.yaxis, ax.get_ylim(), 1)):
         # Those beyond the limits are not drawn.
@@ -97,7 +97,7 @@ def test_a_robot_shows_its_dimensions_and_its_centre_of_mass() -> None:
     ax = robot.plot()
     told = {text.get_text() for text in words(ax)}
     assert {"axle distance 0.365 m", "radius 0.064 m", "flipper 0.34 m"} <= told
-    # The mass of the raised flippers lies higher than it counts at angle 0, and farther back.
+    # The mass of the raised flippers is higher and farther back than at angle 0.
     (center,) = [line[0] for line in lines(ax) if line.shape == (1, 2)]
     assert 0.0 < center[0] < robot.center_of_mass[0]
     assert center[1] > robot.center_of_mass[1]

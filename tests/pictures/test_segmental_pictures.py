@@ -1,4 +1,4 @@
-"""A chain of shoes in pictures and words: where its shoes lie, and what they are called."""
+"""A chain of shoes in pictures and words: positions and names of its shoes."""
 
 import dataclasses
 import functools
@@ -37,7 +37,7 @@ def simulated(track: Track, terrain: Any = STEP, **fields: Any) -> c2d.Run:
 
 @functools.cache
 def stalled(shape: Any = "rectangle") -> c2d.Run:
-    """Stand before an edge with weak motors, for fifteen seconds."""
+    """Stand at an edge with weak motors for fifteen seconds."""
     robot = c2d.robots.engineer(flippers=None, track=c2d.SegmentalTrack(shoe_shape=shape))
     weak = dataclasses.replace(robot.drivetrain, max_torque=2.0)
     return c2d.simulate(dataclasses.replace(robot, drivetrain=weak), c2d.terrains.step(0.08))
@@ -80,8 +80,8 @@ def test_contacts_lie_on_the_shoes_that_are_drawn(chain: c2d.Run) -> None:
             point = np.array([table["x"][row], table["y"][row]])
             distances.append(distance(point, outlines[pieces.index(table["body"][row])]))
     assert len(distances) > 100
-    # Contacts are means over an interval, in which a shoe that is not at rest moves on, at twice
-    # the speed of the robot at most.
+    # Contacts are means over an interval, in which a moving shoe moves at most at twice the speed
+    # of the robot.
     assert np.quantile(distances, 0.85) < 1e-4
     interval = float(np.diff(chain.time).max())
     assert max(distances) < 2.0 * chain.scenario.drive.speed * interval
@@ -192,7 +192,7 @@ def test_the_page_has_sprocket_idler_and_wheels(terrain: Any) -> None:
 
 
 def rows_of(scene: Scene, *kinds: BodyKind) -> list[int]:
-    """Bodies of the chassis that are seen."""
+    """Visible bodies of the chassis."""
     return [row for row in scene.carriers[0].bodies.tolist() if scene.kinds[row] in kinds]
 
 

@@ -1,4 +1,4 @@
-"""The page of a run, as far as no browser is needed: what it holds, and that it is harmless."""
+"""The page of a run, without a browser: its content, and that it is harmless."""
 
 import base64
 import hashlib
@@ -131,7 +131,7 @@ def test_every_kind_of_robot_and_ground_has_a_page(scenario: c2d.Scenario) -> No
     recording = Page(run.to_html()).recording
     assert recording["frames"]["count"] == run.time.size
     (chassis, *_) = recording["robot"]["carriers"]
-    # Nothing gets inside what is closed, and only a belt carries something along.
+    # Nothing gets inside closed carriers, and only a belt moves grousers.
     looks = {body["look"] for body in chassis["bodies"]}
     closed = looks & {"hull", "guide", "shoe"}
     assert bool(chassis["envelope"]) is not bool(closed)
@@ -186,7 +186,7 @@ def test_an_inset_line_lies_inside_by_its_depth() -> None:
 def test_fifteen_seconds_take_less_than_500_kb(
     robot: c2d.Robot, say: Callable[[str], None]
 ) -> None:
-    # The criteria keep it going to the end, and each wheel has a motor of its own.
+    # The criteria keep it running to the end, and each wheel has its own motor.
     scenario = c2d.Scenario(robot, c2d.terrains.step(0.1)).replace(
         {
             "criteria.stationary_distance": 1e-12,

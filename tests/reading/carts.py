@@ -1,4 +1,4 @@
-"""Robots written for one test each, as URDF and SDF text, and how they are read or refused."""
+"""Robots for single tests as URDF and SDF text, and helpers that read or refuse them."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ SIDES = (("left", 1.0), ("right", -1.0))
 
 
 def wheel(name: str, xyz: str, **changed: str) -> str:
-    """A link on a joint of the hull, each part replaced by what is given for it."""
+    """A link on a joint of the hull, with any part replaced."""
     parts = {
         "parent": "hull",
         "radius": "0.08",
@@ -81,7 +81,7 @@ def link(name: str, joint: str, xyz: str = "0 0 0", parent: str = "hull") -> str
 
 
 def read(folder: Path, text: str, name: str = "cart.urdf", **how: Any) -> c2d.Reading:
-    """Read a text as a file; its notes and warnings are in the reading, and kept."""
+    """Read a text as a file; its notes and warnings must be among the stored ones."""
     path = folder / name
     path.write_text(text, encoding="utf-8")
     reading = quietly(path, **how)
@@ -120,7 +120,7 @@ def tracked(drums: Iterable[tuple[float, float, float]], boxes: str = "") -> str
 
 
 def refused(folder: Path, text: str, rule: str, name: str = "cart.urdf", **how: Any) -> None:
-    """Read a text that must be refused, by a rule and with file and line."""
+    """Read a text that must be refused with a rule, file and line."""
     with pytest.raises(c2d.ScenarioError, match=rule) as caught:
         read(folder, text, name, **how)
     assert re.match(re.escape(name) + r":\d+", caught.value.path), caught.value.path
@@ -128,7 +128,7 @@ def refused(folder: Path, text: str, rule: str, name: str = "cart.urdf", **how: 
 
 
 def left_out(folder: Path, text: str, reason: str, name: str = "cart.urdf", **how: Any) -> None:
-    """Read a text of which a collision shape must be left out, with file, line and reason."""
+    """Read a text with a collision shape that must be left out, with file, line and reason."""
     reading = read(folder, text, name, **how)
     told = [warning for warning in reading.warnings if "is left out" in warning]
     assert told, reading.warnings

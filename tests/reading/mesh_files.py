@@ -71,7 +71,7 @@ def dae(
     corners: Rows = CORNERS,
     faces: Rows = FACES,
 ) -> bytes:
-    """Make COLLADA of corners in metres, with what is before it, as nodes and as its scene."""
+    """Make COLLADA from corners in metres, with a prefix, nodes and a scene."""
     numbers = [number / unit for corner in corners for number in corner]
     text = DAE.format(
         before=before,
@@ -133,7 +133,7 @@ def _buffer(corners: Rows, faces: Rows) -> bytes:
 
 
 def nested_nodes(levels: int) -> tuple[str, str]:
-    """Return nodes, each of which has the next one twice, and the scene that has the first."""
+    """Return nodes that each contain the next one twice, and the scene with the first."""
     rows = [
         f'<node id="a{n}"><instance_node url="#a{n + 1}"/><instance_node url="#a{n + 1}"/></node>'
         for n in range(levels)

@@ -1,4 +1,4 @@
-"""What a name may lead to that is no file of a model: pipes, devices, folders, sockets, links."""
+"""Names that are not files of a model: pipes, devices, folders, sockets, links."""
 
 import contextlib
 import os

@@ -1,4 +1,4 @@
-"""All that a reading has of a model file, as lines of text: the tree, the robot, what is said."""
+"""The complete content of a reading as lines of text: tree, robot and messages."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from crawler2d.model_tree import Joint, Link
 
 
 def account(reading: c2d.Reading) -> str:
-    """Write down a reading; the folder of its file is told as FOLDER."""
+    """Describe a reading, with the folder of its file as FOLDER."""
     lines = [f"friction = {told(reading.friction)}", f"engine = {reading.engine}"]
     tree = reading.tree
     lines += [f"tree {tree.name} at {tree.at}: {tree.format}, {tree.file}"]
@@ -62,7 +62,7 @@ def of_link(link: Link) -> Iterator[str]:
 
 
 def of_joint(joint: Joint) -> str:
-    """Return the line of a joint: what it has, but for what is as usual."""
+    """Return the line of a joint with its values, except defaults."""
     usual = {each.name: each.default for each in dataclasses.fields(joint)}
     parts = (
         f"{name} {told(value)}"
@@ -79,7 +79,7 @@ def own(part: Any) -> Iterator[tuple[str, Any]]:
 
 
 def leaves(value: Any, path: str) -> Iterator[tuple[str, Any]]:
-    """Yield what nested mappings have, with its path."""
+    """Yield the values of nested mappings with their paths."""
     if isinstance(value, Mapping):
         for name, inner in value.items():
             yield from leaves(inner, f"{path}.{name}")
@@ -90,7 +90,7 @@ def leaves(value: Any, path: str) -> Iterator[tuple[str, Any]]:
 def told(value: Any) -> str:
     """Write a value, numbers with few digits."""
     if isinstance(value, (float, np.floating)):
-        return f"{round(float(value), 9) + 0.0:.6g}"  # rounding of the processor stays below
+        return f"{round(float(value), 9) + 0.0:.6g}"  # smaller values are rounding errors
     if isinstance(value, np.ndarray):
         return told(value.tolist())
     if isinstance(value, (tuple, list)):

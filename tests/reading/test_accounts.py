@@ -1,4 +1,4 @@
-"""What is read of files with a bit of everything, all of it, as kept line by line in `accounts`."""
+"""Readings of files with a bit of everything are, line by line, as in `accounts`."""
 
 import math
 import re
@@ -29,7 +29,7 @@ GENERATED = {
 
 
 def told(folder: Path, name: str, **how: Any) -> list[str]:
-    """Return the lines of the account of a file that is kept or generated."""
+    """Return the lines of the account of a file that is stored or generated."""
     path = KEPT / name
     if name in GENERATED:
         path = folder / name
@@ -68,7 +68,7 @@ def test_a_keyword_changes_these_lines_of_an_account(
 
 @pytest.mark.parametrize("name", ["odd.urdf", "drums.urdf", "gears.urdf"])
 def test_a_robot_is_the_same_wherever_it_stands_in_its_model(tmp_path: Path, name: str) -> None:
-    """Moved by meters and turned, on a link of its own; rounding leaves 1e-12 of that."""
+    """Moved by metres and turned, on its own link; the rounding error is 1e-12 of that."""
     text = GENERATED[name] if name in GENERATED else (KEPT / name).read_text(encoding="utf-8")
     usual, moved = tmp_path / "usual.urdf", tmp_path / "moved.urdf"
     usual.write_text(text, encoding="utf-8")

@@ -1,4 +1,4 @@
-"""What engines make of commanded speeds, and of damping, friction and armature of joints."""
+"""Effects of commanded speeds, and of damping, friction and armature of joints, in engines."""
 
 import re
 from pathlib import Path
@@ -53,7 +53,7 @@ def test_the_armature_of_one_side_is_the_rotor_inertia(tmp_path: Path) -> None:
     assert reading.robot.drivetrain.rotor_inertia == pytest.approx(8.0 * 0.01, rel=1e-12)
     assert reading.sources["robot.drivetrain.rotor_inertia"].startswith("cart.xml:")
     (warning,) = [each for each in reading.warnings if "rotor" in each or "armature" in each]
-    assert "got 0.05 to 0.2 kg m^2" in warning  # if all were as those of the tip, or as the others
+    assert "got 0.05 to 0.2 kg m^2" in warning  # if all were like the tip's, or like the others
 
 
 def test_rotors_in_proportion_to_their_wheels_are_alike(tmp_path: Path) -> None:

@@ -1,6 +1,7 @@
-"""Engines themselves: which figures of a joint play a part where a speed is commanded.
+"""Actual engines: which values of a joint have an effect if a speed is commanded.
 
-A wheel of 0.01 kg m^2 on a fixed base is told 10 rad/s with 1 N m: after 0.05 s it has 5 rad/s.
+A wheel of 0.01 kg m^2 on a fixed base gets a command of 10 rad/s with 1 N m: after 0.05 s it has
+5 rad/s.
 """
 
 import importlib
@@ -40,7 +41,7 @@ def engine(name: str) -> Any:
 
 
 def in_dart(folder: Path, figures: dict[str, float]) -> float:
-    """[rad/s] As gz-physics hands over what SDF has: DART's parser of URDF keeps less."""
+    """[rad/s] With the values of SDF passed as by gz-physics; DART's parser of URDF reads fewer."""
     dart = engine("dartpy")
     path = folder / "wheel.urdf"
     path.write_text(URDF.format(INERTIA, **figures))
@@ -64,7 +65,7 @@ def in_dart(folder: Path, figures: dict[str, float]) -> float:
 
 
 def in_bullet(folder: Path, figures: dict[str, float], **how: float) -> float:
-    """[rad/s] With the torque as argument, as it must be."""
+    """[rad/s] With the torque as argument, which is required."""
     bullet = engine("pybullet")
     path = folder / "wheel.urdf"
     path.write_text(URDF.format(INERTIA, **figures))
@@ -136,6 +137,6 @@ def test_bullet_has_unlimited_torque_unless_it_is_limited(tmp_path: Path) -> Non
 
 
 def test_mujoco_gives_kv_times_the_error(tmp_path: Path) -> None:
-    """Which then falls like exp(-kv t / I): steps of 1 ms, taken implicitly, are 0.5 % off."""
+    """The error falls like exp(-kv t / I); implicit steps of 1 ms are off by 0.5 %."""
     found = in_mujoco(tmp_path, {**USUAL, "effort": 1e3}, kv=0.1)
     assert RATE - found == pytest.approx(RATE * 0.6065, rel=0.005)

@@ -1,4 +1,4 @@
-"""The keys to public trees of models say what the files say: lines, numbers, arithmetic."""
+"""The keys to public trees of models agree with the files: lines, numbers, arithmetic."""
 
 import tomllib
 from typing import Any

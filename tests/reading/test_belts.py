@@ -1,4 +1,4 @@
-"""A moved belt is that round its drums: those that bend it are the outline, others nothing."""
+"""A moving belt runs round its drums: those that bend it are the outline, others are ignored."""
 
 import math
 import re

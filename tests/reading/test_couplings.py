@@ -1,4 +1,4 @@
-"""What is not read of how joints move together, and of how a root stands: warnings say so."""
+"""Couplings of joints and tilts of a root that are not read give warnings."""
 
 import re
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Expressions of xacro files that nobody vouches for: ordinary ones as by Python, others not."""
+"""Expressions of untrusted xacro: ordinary ones are evaluated as in Python, others refused."""
 
 import ast
 import itertools
@@ -24,7 +24,7 @@ pytestmark = pytest.mark.usefixtures("children_of_its_own")  # one that stands r
 
 HERE = Path(__file__).parent
 
-# Escapes from evaluated Python that were published, and their relatives; one a line.
+# Published escapes from evaluated Python, and similar ones, one per line.
 LISTED = (HERE / "hostile_expressions.txt").read_text(encoding="utf-8").splitlines()
 OWNERS = ("()", "[]", "''", "(1)", "x", "l", "d", "d.a", "math", "math.pi", "max", "python.len")
 ATTRIBUTES = (
@@ -66,7 +66,7 @@ HOSTILE = [
 
 
 def names() -> dict[str, Any]:
-    """What xacro gives names to, and a few properties."""
+    """Names of xacro, and a few properties."""
     space = MappingProxyType({"load_yaml": copy_data, "dotify": dict})
     return {**NAMES, "xacro": space, "x": "text", "l": [1], "d": {"a": 1}}
 
@@ -111,9 +111,9 @@ KNOWN = """<xacro:arg name="e" default=""/><xacro:property name="x" value="text"
 def test_xacro_evaluates_no_hostile_expression(
     tmp_path: Path, standing: StandingChild, every: int
 ) -> None:
-    """Each is put together of an argument, so that only what is really evaluated holds it.
+    """Each is built from an argument, so that its result appears only if it is really evaluated.
 
-    All are tried without xacro above, but for those that need it.
+    Those that do not need xacro are tried without it above.
     """
     ours = [text for text in HOSTILE if text.startswith("xacro.")]
     others = [text for text in HOSTILE if text not in ours]
@@ -234,7 +234,7 @@ def test_yaml_that_is_no_plain_data_is_refused(
 
 
 def test_the_environment_is_not_shown(tmp_path: Path, standing: StandingChild) -> None:
-    """A default is taken if there is nothing to show."""
+    """The default is used, as if the variable did not exist."""
     for text in ("$(env HOME)", "$(optenv HOME 8)", "$(optenv PATH)"):
         with refusing(SAID, "must not use environment variables, or"):
             read(tmp_path, f'{XACRO}<link name="{text}"/></robot>', "cart.xacro")
@@ -262,7 +262,7 @@ LISTS: dict[str, list[Any]] = {"xacros": ["a", "b"], "payload_mass": [1.0]}
 
 
 def python_of(text: str, known: dict[str, Any]) -> Any:
-    """What xacro makes of an expression."""
+    """The result of an expression in xacro."""
     public = {name: value for name, value in {**NAMES, **known}.items() if name != "math"}
     return eval(text, {"__builtins__": {}, "math": math, **public})
 
@@ -310,7 +310,7 @@ def test_arithmetic_is_that_of_python(text: str) -> None:
         found = type(error)
     except NotAllowed as error:
         found = error.found
-        assume(found not in ("a larger one", "% of a text"))  # which Python would make
+        assume(found not in ("a larger one", "% of a text"))  # the result in Python
     assert found == expected
     assert type(found) is type(expected)
 

@@ -1,4 +1,4 @@
-"""Whatever a model names as a file is read if it may be, or not opened at all, with the reason."""
+"""Files that a model names are read if allowed, or not opened at all, with the reason."""
 
 import os
 import re
@@ -26,7 +26,7 @@ OBJ = "\n".join(f"v {x} {y} {z}" for x, y, z in CORNERS)
 
 @pytest.fixture(autouse=True)
 def _nothing_waits() -> Iterator[None]:
-    """End a test that waits for a pipe."""
+    """Abort a test that waits for a pipe."""
 
     def end(*_: Any) -> None:
         raise TimeoutError("a file was waited for")
@@ -94,7 +94,7 @@ def test_a_file_that_xacro_names_and_is_none_is_refused(
 def test_a_missing_include_is_left_out_and_an_invalid_one_refused(
     tmp_path: Path, what: str
 ) -> None:
-    """What leads out of the folder of the model is none of its files, whatever it is."""
+    """A path that leads out of the folder of the model is not one of its files, whatever it is."""
     pytest.importorskip("xacrodoc")
     ODD[what](tmp_path / "part")
     text = urdf('\n<xacro:include filename="part"/>', WHEELS).replace('<robot name="cart">', XACRO)
@@ -127,7 +127,7 @@ def mjcf(asset: str) -> str:
 def test_a_file_that_mjcf_names_and_is_none_is_not_opened(
     tmp_path: Path, what: str, named: str
 ) -> None:
-    """What is only seen is not even looked for; nor does a mesh matter that no shape has."""
+    """Visuals are not even searched for; meshes without shapes do not matter either."""
     pytest.importorskip("mujoco")
     for suffix in ("stl", "png", "skn", "xml"):
         ODD[what](tmp_path / f"part.{suffix}")
@@ -138,7 +138,7 @@ def test_a_file_that_mjcf_names_and_is_none_is_not_opened(
 
 
 def test_mujoco_opens_nothing_by_itself(tmp_path: Path) -> None:
-    """Not even what no list of assets has, such as the mesh of a soft body."""
+    """Not even files outside the list of assets, such as the mesh of a soft body."""
     pytest.importorskip("mujoco")
     os.mkfifo(tmp_path / "part.msh")
     soft = '<flexcomp name="f" type="gmsh" dim="3" file="part.msh"/>'
@@ -220,7 +220,7 @@ def test_a_mesh_of_the_package_round_a_model_is_read(tmp_path: Path, manifest: s
 
 
 def test_packages_of_the_ros_path_are_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Includes and meshes; a manifest that is a pipe keeps nobody waiting."""
+    """Includes and meshes; a manifest that is a pipe does not block."""
     pytest.importorskip("xacrodoc")
     package, cart = tmp_path / "ros" / "parts", tmp_path / "cart"
     package.mkdir(parents=True)
@@ -266,7 +266,7 @@ def test_too_many_corners_are_left_out(tmp_path: Path) -> None:
 def test_a_text_mesh_takes_time_by_its_size_alone(
     tmp_path: Path, suffix: str, filling: str
 ) -> None:
-    """20 MB of empty lines in a text STL were read without an end: their time grew as a square."""
+    """20 MB of empty lines in a text STL took for ever: time was quadratic in their number."""
     (tmp_path / f"m.{suffix}").write_text("solid\n" + filling * (20_000_000 // len(filling)))
     start = time.perf_counter()
     left_out(tmp_path, with_mesh(f"m.{suffix}"), "must ")

@@ -1,4 +1,4 @@
-"""One robot in three formats is one robot; each format is read by its own rules."""
+"""One robot in three formats gives the same robot; each format is read by its own rules."""
 
 import itertools
 import math
@@ -81,7 +81,7 @@ def test_a_geom_of_higher_priority_has_its_own_friction(tmp_path: Path) -> None:
 def test_friction_is_that_of_a_contact_in_mujoco(
     tmp_path: Path, attributes: str, wanted: float
 ) -> None:
-    """Of two geoms, the larger number of dimensions counts, or all of that with more priority."""
+    """The larger number of dimensions of two geoms counts, or everything of the prior one."""
     mujoco = pytest.importorskip("mujoco")
     on_ground = f"""<mujoco><worldbody><geom type="plane" size="1 1 1"/><body pos="0 0 0.09">
       <freejoint/><geom size="0.1" {attributes}/></body></worldbody></mujoco>"""
@@ -224,7 +224,7 @@ def test_xacro_takes_arguments(tmp_path: Path) -> None:
 
 
 def test_arguments_that_no_file_has_get_a_warning(tmp_path: Path) -> None:
-    """Those of a file of settings are often passed as a whole."""
+    """All settings of a file are often passed together."""
     pytest.importorskip("xacrodoc")
     (tmp_path / "sizes.yaml").write_text("load: 3\n", encoding="utf-8")
     text = f'{XACRO}<xacro:arg name="mass" default="8"/>{urdf(WHEELS).partition(">")[2]}'

@@ -1,4 +1,4 @@
-"""A round wheel with equal grousers evenly round it is a gear wheel; others are refused by name."""
+"""A round wheel with equal, evenly spaced grousers is a gear wheel; others are refused by name."""
 
 import math
 import re
@@ -108,7 +108,7 @@ def test_wheels_that_all_start_turned_by_more_are_noted(tmp_path: Path) -> None:
 
 
 def test_a_turn_within_rounding_is_no_phase(tmp_path: Path) -> None:
-    """A share of 0.0004 would come as near as files round."""
+    """A fraction of 0.0004 would fit within the rounding of files."""
     turn = -0.5 * ANGLE + 0.0009
     three = (gear(name, x, turn=turn) for name, x in (("a", 0.2), ("b", -0.2), ("c", 0.0)))
     reading = read(tmp_path, urdf(*three))
@@ -118,7 +118,7 @@ def test_a_turn_within_rounding_is_no_phase(tmp_path: Path) -> None:
 
 
 def test_angles_of_two_wheels_that_a_file_rounds_are_no_turn_of_both(tmp_path: Path) -> None:
-    """Half a milliradian each way would be a turn of 1.5: more than is told."""
+    """Half a milliradian in either direction would be a turn of 1.5, enough for a note."""
     turns = [-0.5 * ANGLE + off for off in (0.0005, -0.0005)]
     reading = read(
         tmp_path, urdf(gear("rear", -0.2, turn=turns[0]), gear("front", 0.2, turn=turns[1]))
@@ -128,7 +128,7 @@ def test_angles_of_two_wheels_that_a_file_rounds_are_no_turn_of_both(tmp_path: P
 
 
 def test_a_warning_about_phases_names_the_wheels_and_the_turn_that_all_have(tmp_path: Path) -> None:
-    """One of six is 0.1 rad off; the turn and the share of all come nearest in squares."""
+    """One of six is off by 0.1 rad; turn and fraction of all are the least-squares fit."""
     turn, places = -0.5 * ANGLE + math.radians(7.0), np.linspace(-0.2, 0.2, 6)
     turns = turn + np.array([0.0, 0.0, 0.1, 0.0, 0.0, 0.0])
     parts = [
@@ -178,7 +178,7 @@ def test_hulls_that_taper_are_grousers_with_their_thickness_at_the_root(tmp_path
     end = f"<geometry>{ROUND.format(radius=ROOT)}</geometry></collision>"
     wheel = wheel_of(tmp_path, parts.replace(end, end + turned), mesh="hull")
     assert wheel.tip_thickness == pytest.approx(0.008)
-    height = math.sqrt(ROOT**2 - 0.0053**2)  # where the flank is, to a hundredth of a millimetre
+    height = math.sqrt(ROOT**2 - 0.0053**2)  # the flank, to a hundredth of a millimetre
     at_root = 0.008 + 0.004 * (0.08 - height) / 0.015
     assert wheel.base_thickness == pytest.approx(at_root, abs=1e-5)
     assert wheel.grouser_height == pytest.approx(math.hypot(0.08, 0.004) - ROOT)
@@ -225,7 +225,7 @@ def test_gear_wheels_with_other_numbers_of_grousers_are_refused(tmp_path: Path) 
     ("turns", "how"),
     [
         ([0.0, ANGLE, 2.0 * ANGLE, 3.0 * ANGLE, 4.0 * ANGLE], {}),  # one is missing
-        ([0.1, *(k * ANGLE for k in range(1, 6))], {}),  # one is out of place
+        ([0.1, *(k * ANGLE for k in range(1, 6))], {}),  # one is displaced
         ([0.0, math.pi], {}),  # too few
         (None, {"tip": 0.069}),  # within the wheel
         (None, {"inner": 0.073}),  # beside it
@@ -266,8 +266,8 @@ def test_a_robot_on_gear_wheels_that_was_read_climbs_what_round_ones_do_not(
     [
         ([0.25, 0.5, 0.75, 0.0], 0.25, 0.0),
         ([0.2504, 0.5004, 0.7504, 0.0004], 0.25, 0.0004),  # a frame with a slight tilt
-        ([0.2504, 0.4996, 0.7504, 0.9996], 0.25, 0.0),  # what files round is no tilt
-        ([0.2504, 0.5004, 0.7504, 0.0001], 0.25, 0.0),  # of which it explains a part alone
+        ([0.2504, 0.4996, 0.7504, 0.9996], 0.25, 0.0),  # the rounding of files is not a tilt
+        ([0.2504, 0.5004, 0.7504, 0.0001], 0.25, 0.0),  # of which it explains only a part
         ([0.3, 0.73], 0.43, -0.13),  # any two have an offset and a step
         ([0.2502, 0.5], 0.25, 0.0),
         ([0.999999999999, 0.999999999999], 0.0, 0.0),

@@ -1,4 +1,4 @@
-"""What cannot carry the robot does not stop the reader; what can is refused or gets a warning."""
+"""Oddities in parts that carry the robot are refused or give warnings; others are accepted."""
 
 import re
 import time
@@ -37,7 +37,7 @@ def sensor(joint: str, shape: str = "", name: str = "lidar") -> str:
 
 
 def warnings_of(folder: Path, text: str, name: str = "cart.urdf", **how: Any) -> list[str]:
-    """Read a cart, which must be the one without the oddity, and return its warnings."""
+    """Read a cart, which must equal the one without the oddity, and return its warnings."""
     reading = read(folder, text, name, **how)
     assert reading.robot.outline.axle_distance == 0.4
     for warning in reading.warnings:
@@ -198,7 +198,7 @@ def test_a_heavy_link_keeps_an_inertia_that_it_cannot_have(tmp_path: Path) -> No
 
 
 def test_a_false_inertia_that_makes_no_difference_stays_as_it_is(tmp_path: Path) -> None:
-    """As the flippers of 1e-5 kg with 1e-3 kg m2 do, which are in public models."""
+    """Like flippers of 1e-5 kg with 1e-3 kg m2 in public models."""
     tiny = sensor('type="fixed">').replace('<mass value="0.5"/>', '<mass value="1e-5"/>')
     tensor = '<inertia ixx="1e-3" ixy="0" ixz="0" iyy="1e-3" iyz="0" izz="1e-3"/>'
     assert warnings_of(tmp_path, urdf(WHEELS, re.sub(r"<inertia .*?/>", tensor, tiny))) == []
@@ -272,7 +272,7 @@ def test_parts_outside_of_an_sdf_model_are_left_out(tmp_path: Path, part: str, r
 
 
 def test_a_nested_model_is_part_of_the_robot(tmp_path: Path) -> None:
-    """Its frame is given in that of the model, and its names are its own."""
+    """Its frame is relative to that of the model, and it has its own names."""
     mast = """<model name="mast"><pose>0 0 0.5 0 0 0</pose>
       <link name="hull"><inertial><mass>2</mass><inertia><ixx>0.1</ixx><iyy>0.1</iyy><izz>0.1</izz>
       </inertia></inertial></link>
@@ -312,7 +312,7 @@ def test_a_placement_frame_is_where_its_model_is_placed(tmp_path: Path) -> None:
 
 
 def test_a_placement_frame_may_be_that_of_a_model_inside(tmp_path: Path) -> None:
-    """Both models are placed by frames of their own, and the inner one by the outer's link."""
+    """Both models are placed by their own frames, and the inner one by the outer's link."""
     inner = """<model name="lamp" placement_frame="bulb">
       <pose relative_to="top">0 0 0.1 0 0 0</pose>
       <link name="bulb"><pose>0 0 0.7 0 0 0</pose><inertial><mass>1</mass></inertial></link></model>
@@ -326,7 +326,7 @@ def test_a_placement_frame_may_be_that_of_a_model_inside(tmp_path: Path) -> None
 def test_models_in_models_that_are_all_placed_by_the_innermost_link_take_no_time(
     tmp_path: Path,
 ) -> None:
-    """Each is placed at the origin of the next, and its link once, not twice as often each time."""
+    """Each is placed at the origin of the next, and its link is placed only once."""
     count = 30
     names = [f"m{number}" for number in range(count)]
     inner = '<link name="z"><pose>0 0 1 0 0 0</pose><inertial><mass>1</mass></inertial></link>'
@@ -424,7 +424,7 @@ CUBE = """<collision name="{name}"><pose>{x} 0 0.5 0 0 0</pose>{more}<geometry><
 
 
 def auto(inertial: str, *cubes: str) -> str:
-    """A vehicle with a link whose mass is to be worked out."""
+    """A vehicle with a link whose mass is to be computed."""
     return in_model(f"""<link name="b"><inertial auto="true">{inertial}</inertial>{"".join(cubes)}
       </link><joint name="w" type="fixed"><parent>hull</parent><child>b</child></joint>""")
 
@@ -531,7 +531,7 @@ def test_a_mesh_of_mjcf_that_is_only_seen_need_not_be_there(tmp_path: Path) -> N
 
 
 def test_a_mesh_that_alone_gives_a_body_its_mass_is_named_if_it_is_missing(tmp_path: Path) -> None:
-    """MuJoCo would say that the mass is too small, of a body that has a shape in the file."""
+    """MuJoCo would complain about too small a mass of a body that has a shape in the file."""
     pytest.importorskip("mujoco")
     wheel = """<inertial pos="0 0 0" mass="1" diaginertia="0.004 0.0078125 0.004"/>
         <geom class="tread" size="0.125 0.03125"/>"""

@@ -1,4 +1,4 @@
-"""Meshes are read as hulls in a process of their own, which opens nothing and has its limits."""
+"""Meshes are read as hulls in a separate process, which opens no files and has limits."""
 
 import os
 import sys
@@ -98,7 +98,7 @@ def test_part_of_a_mesh_is_left_out(tmp_path: Path) -> None:
 
 @pytest.mark.usefixtures("children_of_its_own")
 def test_an_existing_mesh_needs_the_extra(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A robot must not depend on what is installed: so the mesh is not left out."""
+    """A robot must not depend on installed packages, so the mesh is not left out."""
     (tmp_path / "site").mkdir()
     raising = "raise ModuleNotFoundError('no', name='trimesh')"
     (tmp_path / "site" / "trimesh.py").write_text(raising)

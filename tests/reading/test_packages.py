@@ -96,7 +96,7 @@ def test_a_package_is_found_by_a_variable(
 def test_the_nearest_package_comes_first_and_a_given_one_before_it(
     clone: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Only one of them has the mesh; so the others, if taken, are errors."""
+    """Only one of them has the mesh, so that choosing another is an error."""
     cart = clone / "models"
     package(clone / "near")
     (package(tmp_path / "ros" / "parts") / "m.obj").unlink()

@@ -1,4 +1,4 @@
-"""The public models are read as their files have them; each figure is checked against the file."""
+"""Readings of public models agree with their files; each value is checked against the file."""
 
 import dataclasses
 import math

@@ -1,4 +1,4 @@
-"""Main files of public repositories, read in their trees by default: as their keys say."""
+"""Main files of public repositories, read in their trees by default, agree with their keys."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ each_read = pytest.mark.parametrize("key", READ, ids=[key.name for key in READ])
 
 
 def figures_of(reading: c2d.Reading) -> dict[str, Any]:
-    """What a reading has of the figures of a key, in the frame of the model, x forward and z up."""
+    """The values of a reading for a key, in the frame of the model, x forward and z up."""
     robot, wheels = reading.robot, reading.wheels
     place, turn = reading.frame.place, reading.frame.turn
 

@@ -1,4 +1,4 @@
-"""Xacro of strangers expands by default: what is not there is left out, with a warning."""
+"""Untrusted xacro expands by default; missing files are left out, with a warning."""
 
 import os
 import re
@@ -103,7 +103,7 @@ def expand(path: Path, **how: Any) -> tuple[str, list[ReadingWarning]]:
 
 
 def copied(key: Key, to: Path) -> Path:
-    """Copy a tree to where no repository is; return the main file."""
+    """Copy a tree outside of any repository; return the main file."""
     shutil.copytree(key.folder, to / "clone")
     return to / "clone" / key.file.relative_to(key.folder)
 
@@ -446,7 +446,7 @@ def test_settings_are_not_used_on_request_or_where_there_is_a_default(tmp_path: 
     own = '<xacro:arg name="hull" default="8"/>'
     assert with_arguments(tmp_path, "hull", own=own).warnings == ()
     reading = with_arguments(tmp_path, "hull", "load", own=own)
-    assert reading.robot.mass == 12.0  # 3 kg: the file is taken as a whole
+    assert reading.robot.mass == 12.0  # 3 kg: all settings of the file are used
     assert reading.warnings[1] == (
         "a.yaml is used with all its settings, also instead of defaults, got hull: 3 for 8"
     )

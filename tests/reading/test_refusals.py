@@ -1,4 +1,4 @@
-"""What a side view cannot hold, and what no robot is, is refused by name, with its line."""
+"""Models that a side view cannot represent, or that are not robots, are refused with their line."""
 
 import re
 from pathlib import Path
@@ -26,7 +26,7 @@ from tests.reading.carts import (
 
 
 def on_links(kind: str) -> str:
-    """Front wheels on a link of their own, which moves on the hull."""
+    """Front wheels on their own link, which moves on the hull."""
     arms = "".join(link(f"{side}_arm", kind, f"0.2 {sign * 0.1} 0") for side, sign in SIDES)
     wheels = "".join(
         wheel(f"{side}_front", f"0 {sign * 0.05} 0", parent=f"{side}_arm") for side, sign in SIDES
@@ -204,7 +204,7 @@ def test_a_skid_that_rubs_on_level_ground_gets_a_warning(tmp_path: Path) -> None
     "shape", ['<box size="0.1 0.1 0.1"/>', '<cylinder radius="0.05" length="0.04"/>']
 )
 def test_a_lidar_that_turns_touches_nothing(tmp_path: Path, shape: str) -> None:
-    """Neither is one that is round about its axis a wheel with an upright axle."""
+    """Nor is a lidar that is round about its axis a wheel, as its axle is upright."""
     lidar = link("lidar", 'type="continuous"><axis xyz="0 0 1"/>', "0.1 0 0.2").replace(
         "</link>", collision(shape) + "</link>"
     )

@@ -1,4 +1,4 @@
-"""Rules of model files that few files break: each is refused by name, with its line."""
+"""Rules of model files that are rarely broken: each is refused by name, with its line."""
 
 import re
 from pathlib import Path

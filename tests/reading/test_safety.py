@@ -1,4 +1,4 @@
-"""A file that nobody vouches for costs neither time nor memory, and its error names the line."""
+"""An untrusted file takes neither much time nor memory, and its error names the line."""
 
 import pickle
 import re

@@ -61,7 +61,7 @@ def test_a_changed_file_is_written_in_metres(tmp_path: Path) -> None:
 
 
 def test_a_mesh_has_its_own_scale_times_that_of_the_file() -> None:
-    """And one that has none gets it."""
+    """A mesh without a scale gets that of the file."""
     text = (ROBOTS / "absolem.sdf").read_text(encoding="utf-8")
     with_scale = text.count("<scale>0.001 0.001 0.001</scale>")
     assert 0 < with_scale < text.count("<mesh>")

@@ -1,4 +1,4 @@
-"""Drums that stand still, free wheels and castors: read as the track that they stand for."""
+"""Fixed drums, free wheels and castors are read as the track that they represent."""
 
 import math
 import re
@@ -119,7 +119,7 @@ def test_a_drum_at_the_tip_alone_is_no_flipper(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("end", ["front", "rear"])
 def test_a_sprocket_may_be_at_either_end_of_a_flipper(tmp_path: Path, end: str) -> None:
-    """As where all sprockets are ahead: that of a rear flipper is then on its pivot."""
+    """If all sprockets are in front, that of a rear flipper is on its pivot."""
     kind = 'type="revolute"><axis xyz="0 1 0"/>' + LIMIT
     sprocket, idler = ("0 0 0", 0.2) if end == "rear" else ("0.2 0 0", 0.0)
     parts = []
@@ -163,7 +163,7 @@ def test_freely_rolling_wheels_leave_the_servos_of_the_others(tmp_path: Path) ->
 
 
 def test_wheels_on_flippers_that_roll_freely_get_a_warning(tmp_path: Path) -> None:
-    """They are simulated with motors, as those of the chassis are."""
+    """They are simulated with motors, like those of the chassis."""
     pytest.importorskip("mujoco")
     text = (FILES / "cart.xml").read_text(encoding="utf-8")
     text = re.sub(r'<velocity joint="\w+_flipper_(root|tip)_joint".*?/>', "", text)
@@ -176,7 +176,7 @@ def test_wheels_on_flippers_that_roll_freely_get_a_warning(tmp_path: Path) -> No
 
 
 def test_a_differential_drive_in_a_urdf_names_its_motors(tmp_path: Path) -> None:
-    """As in SDF: a castor is no wheel without a partner, and the other wheels roll freely."""
+    """As in SDF: a castor is not a wheel without partner, and the other wheels roll freely."""
     joints = "".join(f"<{side}_joint>{side}_rear_joint</{side}_joint>" for side, _ in SIDES)
     plugin = f'<gazebo><plugin name="diff_drive" filename="x">{joints}</plugin></gazebo>'
     found = read(tmp_path, urdf(WHEELS, wheel("castor", "0.3 0 -0.05", radius="0.03"), plugin))
@@ -250,7 +250,7 @@ def test_a_shape_that_stands_a_little_out_of_a_flipper_is_left_out_with_a_warnin
 
 
 def test_a_moved_box_above_the_upper_run_is_belly(tmp_path: Path) -> None:
-    """As boxes that stand for a tensioned run: they meet no obstacle before the belt does."""
+    """Such as boxes for a tensioned run, which meet no obstacle before the belt."""
     shape = collision(DRUM.format(radius=0.08), ACROSS)
     roof = collision('<box size="0.2 0.05 0.02"/>', '<origin xyz="0.2 0 0.09"/>')
     tracks = "".join(

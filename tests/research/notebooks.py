@@ -1,4 +1,4 @@
-"""Runs the notebooks of `studies/` and writes what they show into them; `make notebooks` runs it.
+"""Runs the notebooks of `studies/` and writes their outputs into them; `make notebooks` runs it.
 
 A notebook is committed with its outputs, so that it can be read where nothing can be run. No output
 is written by hand: the hash of the sources that the outputs belong to is kept in the metadata.
@@ -54,7 +54,7 @@ def executed(path: Path, *, quick: bool) -> nbformat.NotebookNode:
     client = nbclient.NotebookClient(
         notebook,
         timeout=_OF_A_CELL,
-        coalesce_streams=True,  # printed text comes in pieces that differ from run to run
+        coalesce_streams=True,  # printed text comes in pieces that differ between runs
         resources={"metadata": {"path": str(path.parent)}},
     )
     client.execute(env={**os.environ, "CRAWLER2D_QUICK": "1" if quick else "0"})
@@ -62,7 +62,7 @@ def executed(path: Path, *, quick: bool) -> nbformat.NotebookNode:
 
 
 def hash_of_sources(notebook: nbformat.NotebookNode) -> str:
-    """Return the SHA-256 of what all cells say, texts included."""
+    """Return the SHA-256 of the sources of all cells, including texts."""
     sources = [[cell.cell_type, cell.source] for cell in notebook.cells]
     return hashlib.sha256(json.dumps(sources).encode()).hexdigest()
 
@@ -73,12 +73,12 @@ def kept_hash(notebook: nbformat.NotebookNode) -> str:
 
 
 def keep_hash(notebook: nbformat.NotebookNode) -> None:
-    """Note in the metadata which sources the outputs belong to."""
+    """Record in the metadata the sources to which the outputs belong."""
     notebook.metadata["crawler2d"] = {"sources_sha256": hash_of_sources(notebook)}
 
 
 def shown(notebook: nbformat.NotebookNode) -> list[list[tuple[str, str]]]:
-    """List what each code cell shows.
+    """List the outputs of each code cell.
 
     Returns
     -------
@@ -103,7 +103,7 @@ def _shown(output: nbformat.NotebookNode) -> list[tuple[str, str]]:
 
 
 def _stripped(notebook: nbformat.NotebookNode) -> nbformat.NotebookNode:
-    """Take off what differs from one machine or hour to the next, and the pages of replays.
+    """Remove parts that differ between machines or times, and the pages of replays.
 
     A page says how long its run took. It is as large as several figures, and most viewers do not
     show the scripts of others: the text that takes its place says what the run was.
@@ -122,7 +122,7 @@ def _stripped(notebook: nbformat.NotebookNode) -> nbformat.NotebookNode:
 
 
 def _smaller(encoded: str) -> str:
-    """Reduce a figure to 256 colours, as many as it needs: a third of the size."""
+    """Reduce a figure to 256 colours, which are enough: a third of the size."""
     colors = Image.open(io.BytesIO(base64.b64decode(encoded))).convert("RGB")
     file = io.BytesIO()
     colors.quantize(256, dither=Image.Dither.NONE).save(file, "png", optimize=True)
@@ -130,7 +130,7 @@ def _smaller(encoded: str) -> str:
 
 
 def main(names: Sequence[str]) -> None:
-    """Run notebooks, all or those that are named, and write their outputs into them."""
+    """Run all notebooks or the given ones, and write their outputs into them."""
     for path in NOTEBOOKS:
         if names and path.stem not in names:
             continue

@@ -1,4 +1,4 @@
-"""What drives change: the search for the highest edge, on a few runs."""
+"""Effects of drives: the search for the highest edge, with a few runs."""
 
 import csv
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""The notebooks: they run from top to bottom, and their texts, code and outputs belong together."""
+"""Notebooks run from top to bottom, and their texts, code and outputs belong together."""
 
 import ast
 import functools
@@ -41,7 +41,7 @@ def test_there_is_a_notebook() -> None:
     assert NOTEBOOKS
 
 
-# What a text may name: what is put in, where the paper has it, and files of the project.
+# Names in a text: inputs, places in the paper, and files of the project.
 GIVEN = re.compile(r"a step of 75 mm|(Fig\.|Table|eq\.) \(?\d+\)?|crawler2d|\w+_2\.ipynb")
 
 
@@ -77,7 +77,7 @@ def code_of(path: Path) -> list[str]:
 
 
 def named(node: ast.expr) -> Any:
-    """What an expression names in the package; None if it is no such name."""
+    """The object of the package that an expression names; None if it names none."""
     if isinstance(node, ast.Name):
         return c2d if node.id == "c2d" else None
     if isinstance(node, ast.Attribute) and (owner := named(node.value)) is not None:
@@ -87,7 +87,7 @@ def named(node: ast.expr) -> Any:
 
 @of_each
 def test_names_that_a_notebook_uses_exist(path: Path) -> None:
-    """Names and keywords, also where no short run comes."""
+    """Names and keywords, also those that no short run reaches."""
     asked = 0
     for node in ast.walk(ast.parse("\n".join(code_of(path)))):
         if isinstance(node, ast.Attribute):
@@ -120,7 +120,7 @@ def test_the_outputs_are_those_of_the_sources(path: Path) -> None:
 
 
 def kinds_shown(notebook: nbformat.NotebookNode) -> list[list[str]]:
-    """List the kinds of what each code cell shows."""
+    """List the kinds of outputs of each code cell."""
     return [[kind for kind, _ in cell] for cell in shown(notebook)]
 
 

@@ -1,4 +1,4 @@
-"""The study: what it draws, counts and writes, on a few runs."""
+"""The study: its draws, counts and files, with a few runs."""
 
 import csv
 import html
@@ -42,7 +42,7 @@ def sweeps(design: Design = TINY) -> Sweeps:
 
 @pytest.fixture(scope="module")
 def table() -> xr.Dataset:
-    """Two models on four heights, ten runs a cell, with outcomes that are made up."""
+    """Two models on four heights, ten runs per cell, with made-up outcomes."""
     outcomes = np.full((2, 4, 10), "cleared", dtype=object)
     outcomes[0, 1, :6] = "seized"  # a gap below a height that is cleared
     outcomes[0, 3, :] = "tipped_over"
@@ -269,7 +269,7 @@ def test_the_post_enters_the_slot_of_the_public_wheel_model() -> None:
     found = tables.posts(runs)
     for (height, belly), run in runs.items():
         own = [post for post in found if (post.height, post.belly) == (height, belly)]
-        # Of two slots that it enters as deep, the last.
+        # The last of two slots that it enters equally deep.
         deepest = max(own, key=lambda post: (round(post.depth, 5), post.end))
         first, second = map(int, deepest.bodies.split())
         # A post as high as the wheels' radius ends halfway between the runs of the belt.

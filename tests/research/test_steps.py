@@ -1,4 +1,4 @@
-"""The comparison of chains with what stands in for them, on a few runs."""
+"""The comparison of chains with their substitutes, with a few runs."""
 
 import csv
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""Reads public robot models: the masses, wheels and limits that presets are checked against."""
+"""Reads masses, wheels and limits of public robot models, to check presets."""
 
 from __future__ import annotations
 
@@ -70,8 +70,8 @@ def together(links: list[Link]) -> Masses:
 
 
 def lines(file: str) -> list[str]:
-    """Take the lines of a file, the first as number 1."""
-    # A stray carriage return within a line ends none.
+    """Return the lines of a file, the first as number 1."""
+    # A stray carriage return within a line does not end it.
     return ["", *(FOLDER / file).read_bytes().decode().split("\n")]
 
 
@@ -104,7 +104,7 @@ def read_xacro(file: str) -> tuple[dict[str, float], list[Wheel]]:
         name = wheel.attrib["name_link"]
         masses[name] = evaluated(wheel.attrib["mass"], known)
         place = np.array([evaluated(wheel.attrib[axis], known) for axis in "xyz"])
-        # The macro scales the radius, and takes the place as it is.
+        # The macro scales the radius, but not the position.
         radius = evaluated(wheel.attrib["radius"], known) * known["scale"]
         wheels.append(Wheel(name, wheel.attrib["parent"], place, radius))
     for plain in root.findall("link"):
@@ -115,7 +115,7 @@ def read_xacro(file: str) -> tuple[dict[str, float], list[Wheel]]:
 
 
 def xacro_properties(root: ElementTree.Element) -> dict[str, float]:
-    """Evaluate the properties that are numbers and rest on numbers, in their order."""
+    """Evaluate the numeric properties in order."""
     known: dict[str, float] = {}
     for entry in root.iter(_XACRO + "property"):
         with contextlib.suppress(ValueError, KeyError, SyntaxError):

@@ -1,4 +1,4 @@
-"""Presets say what their files say: every line they name, every sum over links, every wheel.
+"""Presets agree with their files: every line they name, every sum over links, every wheel.
 
 The files are public models, unchanged, in `tests/robots`; its README says where each is from.
 """
@@ -30,8 +30,8 @@ def arms(preset: str) -> c2d.Flippers:
     return robot.flippers
 
 
-# File, line, what stands there, and which of its numbers are figures of the preset: by index, the
-# figure as the preset has it, exactly the number there or what follows from it by a rule below.
+# File, line, its text, and which of its numbers are values of the preset: by index, the value in
+# the preset, which is exactly that number or follows from it by a rule below.
 LINES: list[tuple[str, int, str, dict[int, float]]] = [
     (ABSOLEM, 1273, "<pose>", {0: 0.5 * PRESETS["absolem"].outline.axle_distance}),
     (ABSOLEM, 1273, "<pose>", {1: 0.5 * PRESETS["absolem"].gauge, 2: AXLES}),
@@ -104,7 +104,7 @@ LINES: list[tuple[str, int, str, dict[int, float]]] = [
 
 
 def numbers(line: str) -> list[float]:
-    """Numbers of a line, digits within names not counted."""
+    """Numbers of a line, except digits within names."""
     number = r"(?<![\w.])-?\d+\.?\d*(?:e-?\d+)?(?![\w.]\d)"
     return [float(word) for word in re.findall(number, line)]
 
@@ -118,7 +118,7 @@ def test_a_preset_has_the_figure_of_the_line_it_names(
     line = robot_files.lines(file)[number]
     assert holds in line, line
     for index, figure in figures.items():
-        # Halves, fifths and sums of decimals: equal but for rounding.
+        # Halves, fifths and sums of decimals: equal except for rounding.
         assert figure == pytest.approx(numbers(line)[index], rel=1e-14, abs=1e-17)
 
 
@@ -145,7 +145,7 @@ def of_preset(robot: c2d.Robot, height: float) -> Masses:
     [
         ("absolem", ABSOLEM, None, AXLES, {"mass": 1e-4, "x": 1e-5, "z": 1e-5, "inertia": 1e-4}),
         ("marv", MARV, None, 0.0, {"mass": 1e-3, "x": 1e-5, "z": 1e-5, "inertia": 1e-4}),
-        # The angle of 1.5708 rad by which the file turns the body is no right angle exactly.
+        # The angle of 1.5708 rad by which the file turns the body is not exactly a right angle.
         ("gz_tracked_vehicle", GAZEBO, "simple_tracked", AXLES, {"inertia": 1e-9}),
     ],
 )
@@ -191,7 +191,7 @@ def wheels_of(links: list[Link], start: str) -> list[tuple[Array, float]]:
 
 
 def wheels_of_chassis(robot: c2d.Robot) -> dict[str, Array]:
-    """Columns of those that the chassis carries on one side; the other has the same."""
+    """Columns of the wheels that the chassis carries on one side; the other has the same."""
     table = robot.wheels()
     chosen = {
         side: (table["carrier"] == "chassis") & (table["side"] == side)
@@ -204,7 +204,7 @@ def wheels_of_chassis(robot: c2d.Robot) -> dict[str, Array]:
 
 
 def line_between(robot: c2d.Robot, outline: dict[str, Any], track: c2d.LineOfWheels) -> Array:
-    """Places along the line and radii that the model has on a track of such an outline."""
+    """Positions along the line and radii of the model's wheels for such an outline."""
     outline_of_arm = dataclasses.replace(robot.outline, **outline)
     bare = dataclasses.replace(robot, outline=outline_of_arm, flippers=None, track=track)
     wheels = wheels_of_chassis(bare)
@@ -298,7 +298,7 @@ def test_the_engineer_has_the_masses_and_the_wheels_of_its_file() -> None:
     masses, wheels = robot_files.read_xacro(ENGINEER)
     links = sum(masses.values())
     assert links == pytest.approx(12.35, abs=2e-3)  # and 1 g of an inertial sensor
-    # The manipulator's links are commented out, in text that is no element.
+    # The manipulator's links are commented out, and so are not elements.
     text = (FOLDER / ENGINEER).read_text()
     comments = " ".join(re.findall(r"<!--(.*?)-->", text, flags=re.DOTALL))
     manipulator = sum(float(mass) for mass in re.findall(r'mass="([\d.]+)"', comments))

@@ -1,6 +1,6 @@
 """Keys to public trees of models: what a reader should find in each main file, with file and line.
 
-They were written by hand, from the files and not by the reader, which they are there to judge.
+They were written by hand from the files, not by the reader, which they are meant to judge.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ _NUMBER = re.compile(r"(?<![\w.])\d+\.?\d*(?:e[-+]?\d+)?(?![\w.]\d)")
 
 @dataclass(frozen=True)
 class Citation:
-    """A text and the line of a file in which it stands."""
+    """A text and its line in a file."""
 
     path: Path
     line: int
@@ -31,7 +31,7 @@ class Citation:
 
     @property
     def there(self) -> str:
-        """The line as the file has it, or nothing if the file is shorter."""
+        """The line of the file, or nothing if the file is shorter."""
         lines = self.path.read_bytes().decode().split("\n")
         return lines[self.line - 1] if self.line <= len(lines) else ""
 
@@ -43,7 +43,7 @@ class Citation:
 
 @dataclass(frozen=True)
 class Key:
-    """What there is to find in a main file.
+    """The contents of a main file.
 
     Attributes
     ----------
@@ -62,7 +62,7 @@ class Key:
 
     @property
     def figures(self) -> dict[str, Any]:
-        """Values by name; those that the files do not have are under `unknown`."""
+        """Values by name; values that the files do not have are under `unknown`."""
         return {name: entry["value"] for name, entry in self.data["figures"].items()}
 
     @property
@@ -79,7 +79,7 @@ class Key:
 
     @property
     def arguments(self) -> dict[str, str]:
-        """What the main file is expanded with, from settings of its repository."""
+        """Arguments for expanding the main file, from settings of its repository."""
         found: dict[str, str] = {}
         for name in self.data.get("needs", {}).get("arguments_from", []):
             text = (self.folder / name).read_text(encoding="utf-8")
@@ -88,7 +88,7 @@ class Key:
 
     @property
     def given(self) -> dict[str, float]:
-        """Values of the names that expressions use, in their order."""
+        """Values of the names in expressions, in order."""
         known: dict[str, float] = {}
         for name, entry in self.data.get("given", {}).items():
             known[name] = evaluated("${" + entry["how"] + "}", known)
@@ -106,7 +106,7 @@ class Key:
         return [(value(row["mass"]), value(row["x"]), value(row["z"])) for row in rows]
 
     def citations(self, entry: dict[str, Any]) -> list[Citation]:
-        """Places that an entry names: a file's name, if it is not the main one, line and text."""
+        """Citations of an entry: name of the file, if it is not the main one, line and text."""
         found = []
         for at in entry.get("at", []):
             parts = _CITATION.fullmatch(at)
@@ -142,7 +142,7 @@ def keys() -> dict[str, Key]:
 
 
 def expressions(entry: dict[str, Any]) -> Iterator[str]:
-    """Take every expression of an entry: that of a value, of each of several, or of a link."""
+    """Return every expression of an entry: of a value, of several, or of a link."""
     yield from flat(entry.get("how", []))
     for part in ("mass", "x", "z"):
         if part in entry:
@@ -150,10 +150,10 @@ def expressions(entry: dict[str, Any]) -> Iterator[str]:
 
 
 def flat(value: Any) -> list[Any]:
-    """Take what nested lists hold, in order."""
+    """Return the items of nested lists, in order."""
     return [each for part in value for each in flat(part)] if isinstance(value, list) else [value]
 
 
 def decimals(expression: str) -> set[float]:
-    """Take the numbers of an expression that are written with a point or an exponent."""
+    """Return the numbers of an expression with a point or an exponent."""
     return {float(word) for word in _NUMBER.findall(expression) if "." in word or "e" in word}

@@ -1,1 +1,1 @@
-"""The documentation site: what it must hold, without building it."""
+"""Requirements of the documentation site, without building it."""

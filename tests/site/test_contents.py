@@ -1,4 +1,4 @@
-"""The reference names all that is public, and every page can be reached from the start page."""
+"""The reference lists all public names, and every page can be reached from the start page."""
 
 import ast
 import re
@@ -34,7 +34,7 @@ def public_names() -> set[str]:
 
 
 def listed_in(page: Path) -> set[Path]:
-    """Return the pages that a page puts into the contents of the site."""
+    """Return the pages that a page adds to the contents of the site."""
     text = page.read_text(encoding="utf-8")
     if page.name == "README.md":  # its links, which docs/site/extensions/contents.py reads
         return {(page.parent / link).resolve() for link in RELATIVE.findall(text)}

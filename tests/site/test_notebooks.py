@@ -12,7 +12,7 @@ NOTEBOOKS = sorted((ROOT / "studies").glob("*.ipynb"))
 
 @pytest.fixture
 def site(monkeypatch: pytest.MonkeyPatch) -> tuple[Any, Any]:
-    """What offers notebooks, and what finds faults; Python has them where the site is built."""
+    """The extensions for notebooks and for faults, which are installed where the site is built."""
     monkeypatch.syspath_prepend(ROOT / "docs" / "site")
     return import_module("notebooks"), import_module("check")
 

@@ -1,4 +1,4 @@
-"""The page of promises names tests that exist, and no promise is without one."""
+"""The page of promises names existing tests, and every promise has one."""
 
 import ast
 import re
@@ -24,7 +24,7 @@ def names_in(path: Path) -> set[str]:
 
 
 def is_long(path: Path, name: str) -> bool:
-    """Whether all of a test of Python is left to `make soak`."""
+    """Whether a whole Python test runs only in `make soak`."""
     nodes = ast.walk(ast.parse(path.read_text(encoding="utf-8"))) if path.suffix == ".py" else ()
     own = (node for node in nodes if isinstance(node, ast.FunctionDef) and node.name == name)
     return any(

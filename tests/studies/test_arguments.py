@@ -1,4 +1,4 @@
-"""What every study refuses before anything runs."""
+"""Arguments that every study refuses before any run."""
 
 import importlib
 import warnings
@@ -108,7 +108,7 @@ def test_a_single_run_or_scenario_is_no_list_of_them() -> None:
 
 
 def test_fields_that_differ_in_their_seed_alone_get_a_warning_where_runs_draw_it() -> None:
-    # Each row of the result is the same: every run on either has a field of its own.
+    # Each row of the result is the same: every run on either has its own field.
     base = c2d.Scenario(ROBOT, c2d.terrains.flat(), duration=0.1)
     fields = {f"field {seed}": c2d.terrains.random_stepfield(seed) for seed in (1, 2)}
     few: Any = {"until": c2d.Until(min_runs=1, max_runs=1), "progress": False}

@@ -1,4 +1,4 @@
-"""The boundary of a rate along one field: tried at both ends, within, and where it passes."""
+"""The boundary of a rate along one field: tried at both ends, inside, and where it crosses."""
 
 import math
 from typing import Any
@@ -24,7 +24,7 @@ def test_a_belt_climbs_where_friction_exceeds_the_slope() -> None:
     found = friction_of(tolerance=0.002)
     low, high = found["bracket_low"].item(), found["bracket_high"].item()
     assert 0.0 < high - low <= 0.002
-    # The tangent of the slope; its one metre is so short that the run-up counts for a per cent.
+    # The tangent of the slope; its one metre is so short that the run-up makes a per cent.
     assert low == pytest.approx(0.5, abs=0.01)
     assert found["rises"].item()
     assert found["monotone"].item()
@@ -106,7 +106,7 @@ def test_halving_ends_where_there_is_no_number_between() -> None:
 
 
 class Rates(Line):
-    """A line whose rates are given; values that are added have no result."""
+    """A line with given rates; added values have no result."""
 
     def __init__(self, rates: dict[float, float]) -> None:
         nothing: Any = None

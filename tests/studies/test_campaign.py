@@ -1,4 +1,4 @@
-"""Studies repeat each cell until its rate is known, and say what they did."""
+"""Studies repeat each cell until its rate is known, and report this."""
 
 from pathlib import Path
 from types import SimpleNamespace
@@ -167,7 +167,7 @@ def test_points_are_drawn_where_they_were_tried_and_intervals_beside_each_other(
         ends = np.array(bars.get_segments())
         assert ends[:, :, 0].tolist() == [[x, x] for x in tried]
         places.append(bars.get_transform().transform(ends[0])[0, 0])
-    # They are some points apart on the paper, about the place itself.
+    # They are some points apart on paper, centred on the value.
     (middle, _), gap = ax.transData.transform((tried[0], 0.0)), 3.5 * ax.figure.dpi / 72.0
     assert places == pytest.approx([middle - 0.5 * gap, middle + 0.5 * gap])
     assert ax.get_legend().get_window_extent().y1 < ax.get_window_extent().y0

@@ -1,4 +1,4 @@
-"""The real-time factor is simulated time by processor time, of this thread alone."""
+"""The real-time factor is simulated time over processor time of this thread."""
 
 import time
 from typing import Any

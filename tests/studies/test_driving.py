@@ -1,4 +1,4 @@
-"""Speed, acceleration and braking distance of a belt by closed forms, and what limits them."""
+"""Speed, acceleration and braking distance of a belt in closed form, and their limits."""
 
 import math
 from pathlib import Path
@@ -25,7 +25,7 @@ UPHILL = AT_ONCE.replace({"terrain": c2d.terrains.ramp(SLOPE, friction=0.5)})
 WEAK = {f"{DRIVETRAIN}max_torque": 1.0, "terrain.friction": 0.9}
 PUSH = 2.0 * 1.0 / (0.064 - 0.012)  # [N] of both sprockets at the belt radius
 INERTIA = 21.2 + 2.4  # [kg] the track moves with the robot, and round its outline besides
-EXACT = 1e-4  # solver and softness of the contacts: 3e-6 at most was seen
+EXACT = 1e-4  # solver and softness of the contacts: at most 3e-6 was observed
 
 
 def test_a_belt_with_ample_force_reaches_the_commanded_speed() -> None:
@@ -86,10 +86,10 @@ def test_the_first_limit_reached_limits_acceleration_and_braking(case: str) -> N
     ("before", "torque", "friction", "expected"),
     [
         ((1.0, 1.0), (1.015, 1.015), (1.03, 1.03), "friction"),  # a share of 0.02 is needed
-        ((0.9, 1.1), (1.0, 1.3), (1.2, 1.3), "friction"),  # and more than repeats lie apart
-        ((0.0, 0.0), (0.005, 0.005), (0.2, 0.2), "friction"),  # and a figure at all
+        ((0.9, 1.1), (1.0, 1.3), (1.2, 1.3), "friction"),  # and more than the spread of repeats
+        ((0.0, 0.0), (0.005, 0.005), (0.2, 0.2), "friction"),  # and a value at all
         ((1.0, 1.0), (1.5, 1.5), (2.0, 2.0), "torque and friction"),
-        ((1.0, 1.0), (0.5, 0.5), (1.0, 1.0), "none of these"),  # what worsens it limits nothing
+        ((1.0, 1.0), (0.5, 0.5), (1.0, 1.0), "none of these"),  # this worsens it
         ((1.0, math.nan), (1.0, 1.0), (math.nan, math.nan), "torque"),
     ],
 )

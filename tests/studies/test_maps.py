@@ -1,4 +1,4 @@
-"""A map of a rate: a coarse grid, finer along one half; what was not tried is not claimed."""
+"""A map of a rate: a coarse grid, finer along one half; untried cells are not claimed."""
 
 import math
 from types import SimpleNamespace
@@ -55,7 +55,7 @@ def test_a_boundary_is_followed_and_the_rest_is_left_out() -> None:
     truth = np.where(at[None, :] + 0.3 * np.sin(6.0 * at[:, None]) > 0.5, 1.0, 2.0)
     assert (grid.kinds[0] == truth).all()
     assert grid.tried.mean() < 0.35
-    # Both sides of the boundary have been simulated wherever it passes between two cells.
+    # Both sides of the boundary were simulated wherever it passes between two cells.
     changes = truth[:, 1:] != truth[:, :-1]
     assert grid.tried[0, :, 1:][changes].all()
     assert grid.tried[0, :, :-1][changes].all()
@@ -100,7 +100,7 @@ def test_with_unknowns_the_median_decides_and_the_band_says_where_it_is_not_sure
     assert tried[::2, ::2].all()
     straddles = (found["band_low"] <= 0.5) & (found["band_high"] >= 0.5)
     assert (found["unsure"].to_numpy() == straddles.to_numpy())[tried].all()
-    # What was not simulated is as certain as the least certain cell next to it.
+    # A cell that was not simulated is as certain as the least certain cell next to it.
     unsure = np.pad(found["unsure"].to_numpy() & tried, 1)
     rows, columns = tried.shape
     steps = [(j, i) for j in range(3) for i in range(3)]
@@ -114,7 +114,7 @@ def test_with_unknowns_the_median_decides_and_the_band_says_where_it_is_not_sure
 
 
 def colors_of(ax: Any) -> dict[str, Any]:
-    """Colours, hatching and opacity by what the legend says of them."""
+    """Colours, hatching and opacity by their labels in the legend."""
     legend = ax.get_legend()
     texts = (text.get_text() for text in legend.get_texts())
     return dict(zip(texts, legend.get_patches(), strict=True))
@@ -124,7 +124,7 @@ def test_where_all_slip_the_map_has_another_colour_than_where_all_clear() -> Non
     from matplotlib import pyplot as plt  # noqa: PLC0415
 
     found = map_of(outcome="seized", refine=0).squeeze("model")
-    assert (found["rate"] == 0.0).all()  # nothing seizes: it slips, or clears
+    assert (found["rate"] == 0.0).all()  # no run seizes: it slips, or clears
     ends = found["outcome"].isel(repeat=0).transpose("angle", "friction").to_numpy()
     expected = np.where(ends == "cleared", "cleared", "otherwise")
     assert set(expected.ravel()) == {"cleared", "otherwise"}

@@ -1,4 +1,4 @@
-"""What studies draw and say where no run has a result: no figure that is none."""
+"""Figures and texts of studies without results show no NaN."""
 
 from typing import Any
 
@@ -31,7 +31,7 @@ def _diverging(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def drawn(found: Any) -> list[str]:
-    """The texts of the figure of a study, none of which is that of NaN."""
+    """The texts of the figure of a study, without NaN."""
     texts = [text.get_text() for text in found.plot().figure.findobj(Text)]
     assert not [text for text in texts if "nan" in text.lower()]
     return texts

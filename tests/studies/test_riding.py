@@ -1,4 +1,4 @@
-"""How models ride, and what their odometry reads: the metrics of their runs, and closed forms."""
+"""Vibration and odometry of models: metrics of their runs, and closed forms."""
 
 import math
 from typing import Any
@@ -33,7 +33,7 @@ def test_gear_wheels_shake_where_belts_and_round_wheels_do_not() -> None:
     models = {"belt": BELT, "round": ROUND, "gears": GEARS}
     found = c2d.studies.ride(FLAT, models=models, **HOW)
     belt, wheels, gears = found["vibration"].values
-    assert max(belt, wheels) < 0.02  # the start alone shakes them
+    assert max(belt, wheels) < 0.02  # only the start shakes them
     assert gears > 1.0
     assert found["swing"].sel(model="gears") > 10 * found["swing"].sel(model="belt")
 
@@ -71,7 +71,7 @@ def test_the_part_of_the_error_that_is_sliding_goes_away_with_friction() -> None
     speed, friction = 1.0, 0.2
     fields = {
         "robot.drivetrain.max_acceleration": 1e6,
-        "robot.drivetrain.max_torque": 1e4,  # so that the belt has its speed at once
+        "robot.drivetrain.max_torque": 1e4,  # so that the belt reaches its speed at once
         "drive.speed": speed,
         "terrain.friction": friction,
         "terrain.length": 5.0,
@@ -84,7 +84,7 @@ def test_the_part_of_the_error_that_is_sliding_goes_away_with_friction() -> None
         assert behind.sel(change=change).item() == pytest.approx(expected, rel=1e-3)
     before, after = found["odometry_error_with"].values
     assert before == found["odometry_error"].item()
-    assert after == pytest.approx(0.5 * before, rel=0.1)  # the ways are not quite equal
+    assert after == pytest.approx(0.5 * before, rel=0.1)  # the distances are not quite equal
 
 
 @pytest.mark.parametrize("is_lane", [False, True])

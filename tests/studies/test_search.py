@@ -1,4 +1,4 @@
-"""A search finds the cheapest candidate that succeeds; runs that it has not had say how often."""
+"""A search finds the cheapest candidate that succeeds; fresh runs say how often."""
 
 import random
 from pathlib import Path
@@ -34,7 +34,7 @@ def search(**how: Any) -> Any:
 
 
 class Chances:
-    """Stands for a study: every run of a candidate succeeds with the chance that it is given."""
+    """Replaces a study: every run of a candidate succeeds with a given probability."""
 
     def __init__(self, chances: dict[str, float], costs: list[float], seed: int = 0) -> None:
         any_world: Any = None
@@ -75,7 +75,7 @@ def test_the_cheapest_of_those_that_succeed_is_found() -> None:
 
 
 def test_an_expensive_candidate_returns_when_the_cheap_ones_fail() -> None:
-    # Of 20 runs at 0.9, two or fewer fail in two of three cases: cheap ones crowd out the dear one.
+    # Of 20 runs at 0.9, at most two fail in two of three cases: cheap ones displace the costly one.
     chances = {str(k): 0.9 for k in range(15)} | {"dear": 1.0}
     costs = [float(k) for k in range(15)] + [99.0]
     best = [halved(chances, costs, seed)[0] for seed in range(20)]
@@ -105,7 +105,7 @@ def test_every_run_has_its_own_draw_of_variable_and_unknown_parameters() -> None
     parts: list[Any] = [c2d.Scenario.from_json(text) for text in whole]
     assert len({each.terrain.friction for each in parts}) == 6
     assert len({each.drive.speed for each in parts}) == 6
-    # Whatever was planned before, run k is the same.
+    # Run k is the same, whatever was planned before.
     assert [each.text for each in planner.runs(world, 4, 6).checked] == whole[4:]  # type: ignore[union-attr]
     # Sample k of the unknowns and repeat k of the rest are those of a sweep.
     table = c2d.sweep(

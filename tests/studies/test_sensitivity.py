@@ -42,10 +42,10 @@ def outputs_of(output: Output, sizes: list[int], count: int, seed: int = 0) -> A
 
 
 def either(rough: int = 1, one: float = 0.3, other: float = 0.3) -> tuple[Output, Indices]:
-    """Yes if either one number is low, or the sum of two (modulo 1) that are swapped together.
+    """Yes if one number is low, or if the sum of two (modulo 1) that are swapped together is.
 
-    With a large `rough`, the edge between yes and no is as rough as chance. A third factor has no
-    influence.
+    With a large `rough`, the boundary between yes and no is as rough as chance. A third factor has
+    no influence.
     """
 
     def output(x: Any) -> Any:
@@ -85,7 +85,7 @@ def test_the_indices_of_a_yes_or_no_are_those_of_its_closed_form() -> None:
 
 
 def held(case: tuple[Output, Indices], count: int, designs: int = 200) -> Any:
-    """In which share of designs the intervals hold first and total indices, shape (2, d)."""
+    """Fraction of designs whose intervals contain first and total indices, shape (2, d)."""
     output, truth = case
     inside = []
     for seed in range(designs):
@@ -97,7 +97,7 @@ def held(case: tuple[Output, Indices], count: int, designs: int = 200) -> Any:
 
 @pytest.mark.parametrize("rough", [pytest.param(1, marks=pytest.mark.soak), 7919])
 def test_intervals_cover_the_indices_as_often_as_claimed(rough: int) -> None:
-    # Of 200 designs that hold with a probability of 0.95, less than 0.90 do in one case of 500.
+    # Of 200 designs that hold with a probability of 0.95, less than 0.90 hold in one case in 500.
     assert (held(either(rough), 256) >= 0.90).all()
 
 
@@ -122,7 +122,7 @@ def test_a_larger_design_begins_with_the_smaller_one() -> None:
 
 
 def test_friction_decides_a_slope_and_ample_torque_nothing(slope: Any) -> None:
-    # The friction also varies from run to run, which is a factor of its own.
+    # The friction also varies between runs, which is a separate factor.
     assert slope["unknown"].values.tolist() == ["friction", "max_torque", "run to run"]
     found = slope.isel(model=0)
     assert found["first"].sel(unknown="friction").item() > 0.8

@@ -1,4 +1,4 @@
-"""Which models clear which terrains, and how the others fail."""
+"""Rates of models on terrains, and how the others fail."""
 
 import math
 from typing import Any

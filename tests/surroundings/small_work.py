@@ -1,4 +1,4 @@
-"""A small run, a sweep with its store and an audit: what each odd environment is asked for.
+"""A small run, a sweep with its store and an audit, for each odd environment.
 
 Called with a folder for its files, the number of an open descriptor for its answer, and what to do
 besides the run and the sweep.

@@ -1,4 +1,4 @@
-"""In odd surroundings the same results come out, or an error that says what to do: one row each."""
+"""Odd environments give the same results, or an error that says what to do, one row each."""
 
 import json
 import os
@@ -20,7 +20,7 @@ SAME = ""
 
 
 class Row(NamedTuple):
-    """What is odd, in terms of a shell, and what is expected."""
+    """An odd environment, as shell commands, and the expected result."""
 
     shell: str = ""
     """What is done before Python begins; $FOLDER is where the program keeps its files."""
@@ -39,13 +39,13 @@ class Row(NamedTuple):
 
 
 def mounted(*commands: str) -> Row:
-    """Mounts that this process alone sees, beside its files, which are at /mnt."""
+    """Mounts that only this process sees, with its files at /mnt."""
     lines = " && ".join(("mount --bind $FOLDER /mnt", *commands, 'exec "$@"'))
     return Row(f"exec unshare -m sh -ec '{lines}' sh \"$@\"", needs="unshare -m true")
 
 
 def registers(call: str) -> str:
-    """Python that changes how this process computes: MXCSR is at byte 28 of glibc's fenv_t."""
+    """Python code that changes floating-point modes: MXCSR is at byte 28 of glibc's fenv_t."""
     return (
         "import ctypes, ctypes.util\n"
         "m = ctypes.CDLL(ctypes.util.find_library('m') or 'libm.so.6')\n"
@@ -138,7 +138,7 @@ SHORT = [name for name, row in ROWS.items() if row.soon]
 
 
 def answer(row: Row, place: Path, *more: str) -> dict[str, Any]:
-    """Run the program in such surroundings; its error is an answer, too."""
+    """Run the program in such an environment; its error is an answer, too."""
     folder = os.path.join(os.fsencode(place), row.folder)
     os.makedirs(folder)
     within = b"/mnt" if "/mnt" in row.shell else folder
@@ -220,7 +220,7 @@ def test_odd_surroundings_change_no_result_of_an_audit(
 
 
 def test_a_name_of_300_characters_is_an_error_of_one_line(tmp_path: Path) -> None:
-    """No file system takes it."""
+    """No file system accepts it."""
     import crawler2d as c2d  # noqa: PLC0415
 
     scenario = c2d.Scenario(c2d.robots.engineer(flippers=None), c2d.terrains.flat(), duration=0.1)
@@ -253,7 +253,7 @@ ENDS = {
 
 @pytest.fixture(scope="module")
 def files(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with what the commands are given."""
+    """A folder with the input of commands."""
     import crawler2d as c2d  # noqa: PLC0415
 
     folder = tmp_path_factory.mktemp("commands")
@@ -278,7 +278,7 @@ def check_command(command: str, end: str, files: Path, say: Say = print) -> None
     )
     say(f"{command}, {end}: {done.returncode} {done.stderr.strip()}")
     assert done.returncode in statuses
-    # What help cannot print to the output argparse prints to the errors.
+    # If help cannot be printed to the output, argparse prints it to the error stream.
     assert "Traceback" not in done.stderr
     assert command == "help" or len(done.stderr.splitlines()) <= 1, done.stderr
 

@@ -1,4 +1,4 @@
-"""Kill a process at one system call of its work. Linux alone: the kernel stops it at each."""
+"""Kill a process at one system call of its work. Only on Linux, whose kernel stops it at each."""
 
 import ctypes
 import os

@@ -1,4 +1,4 @@
-"""What comes of a rate that is looked at after every run: exact, from all ways that runs can go.
+"""Exact results for a rate that is checked after every run, from all possible outcomes.
 
     python -m tests.sweeps.looks
 
@@ -21,7 +21,7 @@ Flags = NDArray[np.bool_]
 
 MOST = 500
 RATES = (0.02, 0.1, 0.25, 0.4, 0.5)
-# What is above a half repeats what is below, because failures count as successes do.
+# Rates above a half mirror those below, by symmetry of successes and failures.
 UP_TO_HALF = tuple(each / 100 for each in range(1, 51))
 LEAST = 10
 """Runs before anybody looks at Wilson's interval."""
@@ -36,7 +36,7 @@ class Looks:
 
     @staticmethod
     def of(estimate: Callable[[int, int], Interval], most: int = MOST) -> "Looks":
-        """Estimate from up to so many runs; more successes than runs have the interval 0 to 1."""
+        """Estimate from up to a number of runs; more successes than runs give 0 to 1."""
         low, high = np.zeros((most + 1, most + 1)), np.ones((most + 1, most + 1))
         for n in range(1, most + 1):
             for k in range(n + 1):
@@ -44,7 +44,7 @@ class Looks:
         return Looks(low, high)
 
     def misses(self, rate: float) -> Flags:
-        """Which intervals do not hold a rate."""
+        """Which intervals do not contain a rate."""
         return (self.low > rate) | (self.high < rate)
 
     def stops(self, until: Until) -> Flags:
@@ -58,13 +58,13 @@ class Looks:
 
 @cache
 def sequentials() -> Looks:
-    """The intervals that are tested."""
+    """The tested intervals."""
     return Looks.of(sequential)
 
 
 @cache
 def wilsons() -> Looks:
-    """Intervals for one look; what comes of more is wrong."""
+    """Intervals for a single check; they are wrong for more."""
     return Looks.of(wilson)
 
 
@@ -85,25 +85,25 @@ def endings(rate: float, ends: Flags) -> NDArray[np.float64]:
 
 
 def ever_missed(looks: Looks, rate: float, least: int = 1) -> float:
-    """Return the probability that any interval from `least` runs on does not hold the rate."""
+    """Return the probability that any interval from `least` runs on does not contain the rate."""
     runs = np.arange(len(looks.low))[:, np.newaxis]
     return float(endings(rate, looks.misses(rate) & (runs >= least)).sum())
 
 
 def missed_at_the_end(looks: Looks, rate: float, until: Until) -> float:
-    """Return the probability that the interval with which a cell ends does not hold the rate."""
+    """Return the probability that the final interval of a cell does not contain the rate."""
     return float(endings(rate, looks.stops(until))[looks.misses(rate)].sum())
 
 
 def expected_runs(rate: float, ends: Flags) -> float:
-    """Return the mean number of runs until one of the ends, which as good as all must reach."""
+    """Return the mean number of runs until one of the ends, which almost all must reach."""
     found = endings(rate, ends)
     assert found.sum() > 1.0 - 1e-6
     return float(found.sum(axis=1) @ np.arange(len(ends)))
 
 
 def wilson_runs(rate: float, width: float) -> int:
-    """Return the runs from which on Wilson's interval of this rate is at most so wide."""
+    """Return the number of runs from which Wilson's interval of this rate is at most this wide."""
     wide = 0
     for n in range(1, MOST + 1):
         _, low, high = wilson(round(rate * n), n)
@@ -113,7 +113,7 @@ def wilson_runs(rate: float, width: float) -> int:
 
 
 def binomial_runs(rate: float, power: float) -> int:
-    """Return the runs from which on the exact two-sided test against 1/2 rejects so often.
+    """Return the number of runs from which the exact two-sided test against 1/2 has this power.
 
     The test's level is 5 %.
     """
@@ -148,7 +148,7 @@ def wrong_rows() -> Iterator[list[str]]:
 
 
 def cost_rows() -> Iterator[list[str]]:
-    """Yield the table of what it costs."""
+    """Yield the table of costs."""
     yield ["rate", "width 0.2", "Wilson", "side of 0.5", "test", "either"]
     looks = sequentials()
     for rate in (0.02, 0.1, 0.25, 0.5):

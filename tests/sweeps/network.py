@@ -1,4 +1,4 @@
-"""A simulated cluster: an executor to whose tasks anything happens that a seed says."""
+"""A simulated cluster: an executor with random events, determined by a seed."""
 
 import random
 from collections import Counter
@@ -58,14 +58,14 @@ class Network(Executor):
         return future
 
     def wait(self, futures: Any, return_when: Any) -> Any:
-        """Let things happen until one of the futures is done: in place of `futures.wait`."""
+        """Simulate events until one of the futures is done, instead of `futures.wait`."""
         assert return_when == "FIRST_COMPLETED"
         while not (done := [each for each in futures if each.done()]):
             self.step()
         return SimpleNamespace(done=done)
 
     def step(self) -> None:
-        """Let something happen to a task, and now and then an answer arrive that is late."""
+        """Simulate an event for a task, and sometimes the arrival of a late answer."""
         if self.late and self.draw.random() < 0.2:
             self.arrive_late()
         future, compute = self.tasks.pop(self.draw.randrange(len(self.tasks)))
@@ -98,7 +98,7 @@ class Network(Executor):
         self.last = answer
 
     def arrive_late(self) -> None:
-        """Let an answer arrive to whom nobody listens any longer."""
+        """Let an answer arrive that nobody waits for any longer."""
         future, answer = self.late.pop(self.draw.randrange(len(self.late)))
         try:
             future.set_result(answer)
@@ -106,7 +106,7 @@ class Network(Executor):
             self.happened["arrives late"] += 1
 
     def end(self) -> None:
-        """Let all answers arrive that are on their way."""
+        """Let all pending answers arrive."""
         self.late += [(future, compute()) for future, compute in self.tasks]
         self.tasks = []
         while self.late:
@@ -114,7 +114,7 @@ class Network(Executor):
 
 
 def garbage(build: str, rows: list[tuple[str, Any]]) -> list[Any]:
-    """What no worker should answer, but one with the right bits and a wrong field might."""
+    """An answer that no worker should give, but one with the right bits and a wrong field might."""
     (identity, result), *others = rows
     time = result["metrics"]["time"]
 

@@ -1,4 +1,4 @@
-"""Small sweeps that several tests make."""
+"""Small sweeps for several tests."""
 
 from pathlib import Path
 from typing import Any
@@ -25,7 +25,7 @@ def quiet(base: Scenario, over: Any, **options: Any) -> xr.Dataset:
 
 
 def refusal(base: Any, over: Any, **options: Any) -> c2d.ScenarioError:
-    """Why a sweep is refused, word for word; nothing may run before that."""
+    """The error of a refused sweep, word for word; nothing may run before it."""
     calls: list[int] = []
     with pytest.raises(c2d.ScenarioError) as caught:
         sweep(base, over, **{"progress": lambda done, _: calls.append(done), **options})

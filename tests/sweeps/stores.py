@@ -1,4 +1,4 @@
-"""Stores that tests damage, and what can be read of them."""
+"""Stores for damage by tests, and readers of their contents."""
 
 import contextlib
 import hashlib
@@ -30,14 +30,14 @@ def sound(path: Path, repeats: int = 5) -> Path:
 
 
 def read(path: Path) -> dict[str, str]:
-    """What `table` makes its rows of, as text, by identity."""
+    """The data for the rows of `table`, as text, by identity."""
     kept = [(row.identity, told(row, build, trials)) for row, build, trials in stored_rows(path)]
     assert len(dict(kept)) == len(kept)
     return dict(kept)
 
 
 def bits(path: Path) -> dict[str, str]:
-    """The same without what differs from one computation to the next: the computing time."""
+    """The same without the computing time, which differs between computations."""
     return {
         row.identity: told(replace(row, wall_time=0.0), build, trials)
         for row, build, trials in stored_rows(path)
@@ -56,7 +56,7 @@ def told(row: Row, *more: Any) -> str:
 
 @contextlib.contextmanager
 def opened(path: Path) -> Iterator[sqlite3.Connection]:
-    """Open the file as any other program would."""
+    """Open the file like any other program."""
     with contextlib.closing(sqlite3.connect(path)) as connection, connection:
         yield connection
 
@@ -73,7 +73,7 @@ def change(path: Path, number: int, **columns: Any) -> None:
 
 
 def as_version_1(path: Path) -> None:
-    """Make a store what the former format was."""
+    """Convert a store to the former format."""
     columns = COLUMNS.removesuffix(", checksum")
     with opened(path) as connection:
         connection.executescript(f"""
@@ -91,8 +91,8 @@ def as_version_1(path: Path) -> None:
 
 @contextlib.contextmanager
 def unprivileged() -> Iterator[None]:
-    """Be a user whom permissions bind."""
-    c2d.table([])  # imports what that user may not find
+    """Become a user who is subject to permissions."""
+    c2d.table([])  # imports modules that this user may not be able to read
     assert all(getattr(c2d, name) for name in c2d.__all__)
     root = os.geteuid() == 0
     if root:

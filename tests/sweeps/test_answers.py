@@ -1,4 +1,4 @@
-"""What a worker of an executor may answer, and what is said of an answer that is none."""
+"""Valid answers of an executor's worker, and errors for invalid ones."""
 
 from concurrent.futures import Future
 from typing import Any

@@ -1,4 +1,4 @@
-"""The axes of a sweep: order, labels, names of the dimensions."""
+"""The axes of a sweep: order, labels, names of dimensions."""
 
 import json
 from collections.abc import Iterable
@@ -37,7 +37,7 @@ def test_objects_without_labels_are_labelled_in_short() -> None:
         "LineOfWheels(4, wheel_radius=0.06)",
     ]
     assert found["center_of_mass"].values.tolist() == ["(0.0, 0.02)", "(0.01, 0.02)"]
-    # What a default leads to is left out, too.
+    # Consequences of a default are left out, too.
     solvers = [c2d.Solver(), c2d.Solver(time_step=1e-3), c2d.Solver(accuracy=1e-5)]
     labels = quiet(BASE, {"solver": solvers})["solver"].values.tolist()
     assert labels == ["Solver()", "Solver(time_step=0.001)", "Solver(accuracy=1e-05)"]
@@ -242,7 +242,7 @@ def test_an_axis_of_several_paths_whose_name_is_taken_has_that_of_its_paths() ->
     other = ("start.approach", "robot.track_mass", "robot.mass")
     assert _dimensions([two]) == ["approach_mass"]
     assert _dimensions([("terrain.height",), other[1:]]) == ["height", "track_mass_mass"]
-    # Of the same last parts as another axis.
+    # With the same last parts as another axis.
     front, rear = (("robot.a.x", "robot.a.y"), ("robot.b.x", "robot.b.y"))
     assert _dimensions([front, rear]) == ["robot_a_x_robot_a_y", "robot_b_x_robot_b_y"]
 
@@ -259,7 +259,7 @@ def test_a_label_has_sixty_letters_at_most(count: int) -> None:
 
 
 def test_names_of_columns_are_taken_by_no_path() -> None:
-    """As the guide lists them: of a sweep with all trials, of its rates, and of their band."""
+    """As in the guide: columns of a sweep with all trials, of its rates, and of their band."""
     trials = (
         *("closed_track", "closed_track_clear_of_the_ground", "belt", "belt_from_the_start"),
         *("closed_track_from_the_start", "torque_x2", "friction_x2", "no_belly"),

@@ -1,4 +1,4 @@
-"""Models compared in pairs: counts, intervals, and what a pair is."""
+"""Models compared in pairs: counts, intervals, and the definition of a pair."""
 
 from typing import Any
 
@@ -16,7 +16,7 @@ from tests.kept import refusing
 from tests.shared import ROBOT
 from tests.sweeps.small import SAID
 
-# At this friction some of the draws get over the step and some do not.
+# At this friction some draws clear the step and some do not.
 BASE = Scenario(ROBOT, c2d.terrains.step(0.05, friction=0.6), duration=6.0)
 VARY = {"terrain.friction": uniform(0.45, 0.75), "start.approach": uniform(0.05, 0.15)}
 MODELS = {"belt": c2d.BeltTrack(), "line of 3": c2d.LineOfWheels(3), "skids": c2d.ForceTrack()}
@@ -43,7 +43,7 @@ def test_the_models_run_as_in_a_sweep(found: xr.Dataset) -> None:
 
 
 def test_some_pairs_differ(found: xr.Dataset) -> None:
-    """Otherwise the tests below would be about nothing."""
+    """Otherwise the tests below would be pointless."""
     assert 0.0 < found["rate"].sel(model="belt").item() < 1.0
     assert found["both"].sel(model="line of 3").item() > 2
     assert found["only_reference"].sel(model="skids").item() > 2
@@ -173,7 +173,7 @@ def test_attributes_of_the_model_axis_name_the_replaced_fields() -> None:
     pair = quiet(models, repeats=1, vary={})
     assert pair["model"].attrs["path"] == "robot.mass, gravity"
     assert pair["mass"].values.tolist() == [20.0, 22.0]
-    assert "gravity" not in pair  # the first model leaves it as it is
+    assert "gravity" not in pair  # the first model does not change it
 
 
 @pytest.mark.parametrize(

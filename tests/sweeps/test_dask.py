@@ -38,7 +38,7 @@ def started(**options: Any) -> Iterator[Any]:
     options = {"dashboard_address": ":0", "silence_logs": 50, "threads_per_worker": 1} | options
     import dask.config  # noqa: PLC0415 - optional
 
-    # What a worker imports takes longest, and each has a successor: they are forks of one process.
+    # Imports of a worker take longest, and each has a successor, so they are forks of one process.
     with (
         dask.config.set({"distributed.worker.multiprocessing-method": "forkserver"}),
         distributed.LocalCluster(2, **options) as made,
@@ -76,12 +76,12 @@ def serial(tmp_path_factory: pytest.TempPathFactory) -> Serial:
 
 @pytest.fixture
 def _small_chunks(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Something is left to do whatever happens to the first tasks."""
+    """Small chunks, so that work remains whatever happens to the first tasks."""
     monkeypatch.setattr(collect, "_CHUNK", 5)
 
 
 class Once:
-    """Progress that does something when a share of the runs is done, in a thread of its own."""
+    """Progress that calls a function in a separate thread after a fraction of the runs."""
 
     def __init__(self, action: Callable[[], object], *shares: float) -> None:
         self.action, self.shares = action, sorted(shares)
@@ -94,7 +94,7 @@ class Once:
             self.threads[-1].start()
 
     def join(self) -> int:
-        """How often it was done."""
+        """Number of calls."""
         for thread in self.threads:
             thread.join()
         return len(self.threads)
@@ -138,9 +138,9 @@ POISON = "0.0612345"
 
 
 def die_of_poison(texts: Any, *args: Any) -> Any:
-    """A chunk during which its process is killed, if one of its runs is the one that does so."""
+    """A chunk whose process is killed if it contains a certain run."""
     if any(POISON in text for text in texts):
-        time.sleep(5.0)  # Dask does not start a worker again that dies while it starts
+        time.sleep(5.0)  # Dask does not restart a worker that dies during its start
         os.kill(os.getpid(), signal.SIGKILL)
     return collect.simulate_chunk(texts, *args)
 
@@ -200,7 +200,7 @@ def test_ctrl_c_ends_a_sweep_whose_workers_hang(
 @pytest.mark.soak
 @pytest.mark.usefixtures("_small_chunks")
 def test_dask_itself_replaces_a_worker_that_hangs(serial: Serial, tmp_path: Path) -> None:
-    """After its time to live, five minutes unless it is told otherwise."""
+    """After its time to live, by default five minutes."""
     import dask.config  # noqa: PLC0415 - optional
 
     store = tmp_path / "a.sqlite"
@@ -216,7 +216,7 @@ def test_dask_itself_replaces_a_worker_that_hangs(serial: Serial, tmp_path: Path
 
 
 def pretend(build: str) -> None:
-    """Be a worker of another build."""
+    """Pretend to be a worker of another build."""
     collect._build = lambda: build
 
 
@@ -256,7 +256,7 @@ def test_a_sweep_waited_for_ever_for_workers_that_were_restarted(
 def test_a_scheduler_that_is_killed_loses_nothing(
     returns: bool, serial: Serial, tmp_path: Path
 ) -> None:
-    """One that comes back goes on; else the sweep ends with an error, and a store continues."""
+    """If it returns, the sweep continues; else it ends with an error, and the store continues."""
     store, port = tmp_path / "a.sqlite", 28786
     address = f"tcp://127.0.0.1:{port}"
     parts: list[subprocess.Popen[bytes]] = []

@@ -1,4 +1,4 @@
-"""What repeats draw: the same for every cell, whatever else is drawn."""
+"""Draws of repeats: the same for every cell, whatever else is drawn."""
 
 import math
 from typing import Any
@@ -42,12 +42,12 @@ def drawn(cell: Scenario, *, base: Scenario | None = None, swept: tuple[str, ...
 
 
 def value(distribution: Any, number: float, own: Any = None) -> float:
-    """What a number from 0 to 1 is mapped to."""
+    """The value to which a number from 0 to 1 is mapped."""
     return float(distribution.values(np.array([number]), own)[0])
 
 
 def draw(cell: Scenario, vary: Any, number: float = 0.5) -> dict[str, float]:
-    """What one draw gives, by path of a field."""
+    """The values of one draw by path of a field."""
     variation = Variation.read(cell, vary, [])
     found = variation.draw(cell, {path: np.array([number]) for path in vary})
     return {path: float(values[0]) for path, values in found.values.items()}
@@ -183,7 +183,7 @@ def test_draws_of_two_paths_are_independent() -> None:
     drawn = np.array([uniform_numbers(path, 3, count) for path in paths])
     correlations = np.corrcoef(drawn)[np.triu_indices(len(paths), 1)]
     assert np.abs(correlations).max() < 4.5 / math.sqrt(count)  # standard errors, of 91 pairs
-    # Nor does the next number, or the previous one.
+    # Neither does the next number, or the previous one.
     ahead = np.corrcoef(np.vstack([drawn[:, 1:], drawn[:, :-1]]))
     assert np.abs(ahead - np.diag(np.diag(ahead))).max() < 4.5 / math.sqrt(count)
 
@@ -198,9 +198,9 @@ def test_levels_are_taken_in_turn_and_slow_runs_last_longer() -> None:
     plan = planned(base, variation, 12)
     speeds, durations = plan.drawn["drive.speed"] / base.drive.speed, plan.drawn["duration"]
     assert speeds == pytest.approx(np.tile([0.1, 0.5, 1.0], 4), rel=0.02)
-    assert len(set(speeds.tolist())) == 12  # each with a scatter of its own
+    assert len(set(speeds.tolist())) == 12  # each with its own scatter
     assert durations.tolist() == [30.0, 6.0, 3.0] * 4
-    # Whatever was planned before, the next runs go on in turn; samples begin one further each.
+    # Whatever was planned before, the next runs continue in turn; each sample begins one later.
     planner = Planner(variation, Variation.read(base, {"gravity": uniform(9.0, 10.0)}, []), 0, 3)
     for k, world in enumerate(planner.worlds(base, [])):
         whole = planner.runs(world, 0, 5).drawn["duration"]

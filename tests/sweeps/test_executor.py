@@ -1,4 +1,4 @@
-"""Executors: chunks go out, rows come back, and are those of one thread."""
+"""Executors get chunks, and return the same rows as one thread."""
 
 import asyncio
 import multiprocessing
@@ -31,7 +31,7 @@ KILLED = BrokenExecutor("a worker was killed")
 
 
 class Unreliable(Executor):
-    """Runs at once, but loses the first `losses` tasks after that many others."""
+    """Runs tasks at once, but loses the first `losses` tasks after a number of others."""
 
     def __init__(self, losses: int, after: int = 0, error: BaseException = KILLED) -> None:
         self.losses, self.after, self.error = losses, after, error
@@ -74,12 +74,12 @@ def test_rows_of_threads_are_those_of_one_thread(plain: xr.Dataset) -> None:
 
 @pytest.mark.parametrize("error", [KILLED, KeyboardInterrupt()], ids=["killed", "interrupted"])
 def test_a_lost_worker_costs_nothing_but_its_time(plain: xr.Dataset, error: BaseException) -> None:
-    """Also one that was interrupted, which once counted as Ctrl-C of the user."""
+    """Also an interrupted one, which once counted as the user's Ctrl-C."""
     xr.testing.assert_identical(plain, swept(Unreliable(losses=4, error=error)))
 
 
 class Poisoned(Executor):
-    """Runs at once, but loses every task with one of two runs in it."""
+    """Runs tasks at once, but loses every task with one of two runs."""
 
     def __init__(self) -> None:
         self.poison: list[str] = []
@@ -178,7 +178,7 @@ def test_anything_but_an_executor_is_refused() -> None:
 
 
 class OfDask(Executor):
-    """What a client of Dask returns, as far as a sweep sees."""
+    """A result of a Dask client, as far as a sweep needs it."""
 
     __module__ = "distributed.cfexecutor"
 
@@ -187,7 +187,7 @@ class OfDask(Executor):
 
 
 class Client:
-    """Computes at once what is submitted, in a loop that is asked to pass it on."""
+    """Computes submitted tasks at once, and passes results on through a loop."""
 
     def __init__(self, *, is_lost: bool = False) -> None:
         self.is_lost, self.loop = is_lost, self
@@ -242,5 +242,5 @@ def test_a_task_that_nobody_waits_for_is_cancelled_in_dask(
     assert answer.cancel()
     ((pass_on, task, _),) = waiting
     assert client.cancelled == [task]
-    asyncio.run(pass_on(task, answer))  # which comes too late, and is no error
+    asyncio.run(pass_on(task, answer))  # which is too late, and not an error
     assert answer.cancelled()

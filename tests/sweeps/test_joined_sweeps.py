@@ -1,4 +1,4 @@
-"""Sweeps joined by xarray: equal runs have equal rows, and what was not run is missing."""
+"""Sweeps joined by xarray: equal runs have equal rows, and others are missing."""
 
 from typing import Any
 
@@ -27,7 +27,7 @@ def whole() -> xr.Dataset:
 
 
 def assert_same_runs(joined: xr.Dataset, whole: xr.Dataset) -> None:
-    """Missing runs turn whole numbers and truth values into others that are equal."""
+    """Missing runs change the types of integers and booleans, but not their values."""
     xr.testing.assert_equal(joined, whole)
     xr.testing.assert_identical(rate(joined), rate(whole))
     assert joined.attrs == whole.attrs

@@ -1,4 +1,4 @@
-"""What tables of sweeps, their rates and comparisons are made of, and what is drawn: as in `kept`.
+"""Structure and draws of tables of sweeps, rates and comparisons are as in `kept`.
 
 Figures of runs are left out, as results move with the physics.
 """
@@ -30,7 +30,7 @@ UNKNOWN = {
 
 
 def described(dataset: xr.Dataset) -> str:
-    """Write down dimensions, attributes and columns but those of metrics, with what is drawn.
+    """Describe dimensions, attributes, columns except metrics, and draws.
 
     The kind of a column is that of NumPy, such as u for whole numbers without a sign.
     """

@@ -1,4 +1,4 @@
-"""Sweeps on a simulated cluster end with the rows of one thread, whatever it does to them."""
+"""Sweeps on a simulated cluster give the rows of one thread, whatever happens there."""
 
 import random
 from collections import Counter
@@ -41,7 +41,7 @@ def troubled(
     happened: Counter[str],
     patch: pytest.MonkeyPatch,
 ) -> xr.Dataset:
-    """Call a sweep until it is complete; every row in its store is sound at any time."""
+    """Call a sweep until it is complete; every row in its store is valid at any time."""
     draw, table = random.Random(seed), None
     trouble, refusal = draw.uniform(0.0, 1.5), draw.choice([0.0, 0.05])
     while table is None or "failed" in table["outcome"]:
@@ -141,7 +141,7 @@ def test_garbage_is_never_accepted_as_a_row(
 def test_a_worker_of_another_build_is_refused(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Also one that simulated nevertheless; what was finished before is kept."""
+    """Also one that simulated nevertheless; earlier results are kept."""
     own = str(c2d._core.build_info()["build_id"])
     assert collect.simulate_chunk([BRIEF.to_json()], (), OTHER_BUILD) == (own, [])
 

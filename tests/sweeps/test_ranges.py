@@ -1,4 +1,4 @@
-"""Distributions and ranges as they are: what they say of themselves, and how they are joined."""
+"""Distributions and ranges: their texts and combinations."""
 
 from typing import Any
 
@@ -17,8 +17,8 @@ from tests.sweeps.small import SAID
 NUMBERS = np.array([0.0, 0.25, 0.5, 0.999, 1.0])
 BASE = Scenario(ROBOT, c2d.terrains.step(0.05))
 
-# Of each: its text, whether it varies about a field's own value, whether it is of whole numbers,
-# and what it makes of `NUMBERS` and the own value 2.
+# For each: its text, whether it varies about a field's own value, whether it has integers, and its
+# values for `NUMBERS` and the own value 2.
 EVERY: list[tuple[Any, str, bool, bool, list[float]]] = [
     (c2d.uniform(1.0, 3.0), "Uniform(low=1.0, high=3.0)", False, False, [1, 1.5, 2, 2.998, 3]),
     (

@@ -99,7 +99,7 @@ def test_runs_that_share_a_draw_are_one_cluster_of_an_interval() -> None:
     assert both["count"].values.tolist() == [20, 20]
     for cell in (both.isel(height=0), rate(table, dim=["height", "sample", "repeat"])):
         assert (cell["low"].item(), cell["high"].item()) == pytest.approx(c2d.wilson(1, 2)[1:])
-    # One draw in several cells tells no more than one run; what was not drawn, as a list, counts.
+    # One draw in several cells counts as one run; runs without draws, such as a list, count.
     heights = rate(table, dim="height").isel(sample=0, repeat=0)
     assert (heights["low"].item(), heights["count"].item()) == (c2d.wilson(1, 1).low, 2)
     assert rate(["cleared"] * 9)["low"].item() == c2d.wilson(9, 9).low
@@ -125,7 +125,7 @@ POSES = {
 def test_distinct_poses_are_those_of_the_runs_that_are_counted() -> None:
     posed = TABLE.assign({name: (("height", "repeat"), rows) for name, rows in POSES.items()})
     found = rate(posed)["distinct"]
-    # In the second cell the run with an angle of its own diverged; in the third all were refused.
+    # In the second cell the run with a different angle diverged; in the third all were refused.
     assert found.values.tolist() == [3, 3, 0]
     assert found.attrs == {"units": "1", "long_name": "number of distinct final poses"}
     assert rate(posed, dim=["repeat", "height"])["distinct"].item() == 5

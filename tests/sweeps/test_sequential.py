@@ -1,4 +1,4 @@
-"""Intervals that hold however often one looks: by all ways that runs can go, none of them drawn."""
+"""Intervals that are valid for any number of checks: exact, over all possible outcomes."""
 
 import dataclasses
 import itertools
@@ -19,13 +19,13 @@ from tests.shared import SOAK
 from tests.sweeps import looks
 
 PAGE = (Path(__file__).parents[2] / "docs/studies/stopping.md").read_text(encoding="utf-8")
-# Failures count as successes do: rates above a half have the same figures.
+# Rates above a half have the same values, by symmetry of successes and failures.
 RATES = (0.001, 0.005, *looks.UP_TO_HALF)
 CONFIDENCES = (0.01, 0.5, 0.9, 0.95, 0.999, 1.0 - 1e-12)
 
 
 def martingale(rate: Fraction, runs: tuple[bool, ...]) -> Fraction:
-    """What a rate's bets have made of 1, bet by bet: predicted over true probability."""
+    """The capital of a rate's bets after each bet, from 1: predicted over true probability."""
     product, successes = Fraction(1), 0
     for n, success in enumerate(runs):
         predicted = (successes + Fraction(1, 2) + 5 * rate) / (n + 6)
@@ -80,7 +80,7 @@ def test_the_wealth_is_convex_in_the_rate_and_least_near_the_observed_one() -> N
         assert martingale(Fraction(k, n), runs_of(k, n)) <= 1
 
 
-# Coverage, by all ways that runs can go.
+# Coverage, over all possible outcomes.
 
 
 def test_intervals_ever_miss_a_rate_in_fewer_than_5_percent_up_to_500_runs() -> None:
@@ -153,7 +153,7 @@ def test_the_exact_computation_agrees_with_all_ways_one_by_one() -> None:
         assert looks.endings(rate, ends) == pytest.approx(expected, abs=1e-14)
 
 
-# What intervals look like.
+# Properties of intervals.
 
 
 def test_intervals_contain_the_observed_rate_and_stay_within_0_and_1() -> None:

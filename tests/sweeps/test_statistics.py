@@ -1,4 +1,4 @@
-"""Intervals: published values, an independent implementation where it is there, and the limits."""
+"""Intervals: published values, an independent implementation if installed, and limits."""
 
 import math
 from statistics import NormalDist
@@ -169,7 +169,7 @@ def test_newcombe_paired_covers_the_true_difference_as_often_as_it_claims(
     for table, count in zip(tables.tolist(), counts.tolist(), strict=True):
         _, low, high = newcombe_paired(*table)
         covered += count * (low <= shares[1] - shares[2] <= high)
-    # Of 20 pairs few tables are likely: the coverage jumps about, a little above its claim.
+    # With 20 pairs few tables are likely: the coverage jumps, a little above its claim.
     assert 0.935 < covered / 20_000 < 0.985
 
 
@@ -193,7 +193,7 @@ def test_the_interval_of_an_audit_covers_the_rate_and_is_nearly_as_narrow_as_the
     found = [clustered(audit, np.full(count, size)) for audit in audits]
     covered = np.mean([low <= rate <= high for _, low, high in found])
     assert covered >= 0.93
-    # The ideal knows the correlation, and so how many independent runs tell as much.
+    # The ideal knows the correlation, and so the equivalent number of independent runs.
     worth = count * size / (1.0 + (size - 1.0) * alike)
     shares = audits.sum(axis=1) / (count * size)
     z = NormalDist().inv_cdf(0.975)
@@ -203,7 +203,7 @@ def test_the_interval_of_an_audit_covers_the_rate_and_is_nearly_as_narrow_as_the
 
 
 def test_intervals_of_unequal_clusters_cover_the_rate() -> None:
-    """As where the belt clears only some of the repeats."""
+    """For example if the belt clears only some of the repeats."""
     rng = np.random.default_rng(0)
     covered = 0
     for _ in range(2000):
@@ -222,7 +222,7 @@ def test_clusters_of_one_run_have_wilsons_interval() -> None:
 def test_where_all_runs_agree_each_cluster_counts_once() -> None:
     assert clustered([0] * 12, [5] * 12) == wilson(0, 12)
     assert clustered([5] * 12, [5] * 12) == wilson(12, 12)
-    assert clustered([5, 0, 5], [5, 0, 5]) == wilson(2, 2)  # a cluster without runs tells nothing
+    assert clustered([5, 0, 5], [5, 0, 5]) == wilson(2, 2)  # a cluster without runs adds nothing
     assert clustered([7], [10])[1:] == pytest.approx(
         [0.7 + side for side in scored(0.7, 1.0)], abs=1e-12
     )

@@ -1,4 +1,4 @@
-"""Intervals and tests beside SciPy's, over many drawn inputs and their extremes."""
+"""Intervals and tests agree with SciPy's for many random and extreme inputs."""
 
 import math
 import random
@@ -19,7 +19,7 @@ EXACT = 1e-12
 
 
 def sizes(most: float = 1e6) -> list[int]:
-    """Numbers of runs, from 1 on, as many small ones as large."""
+    """Numbers of runs from 1 on, small and large ones equally often."""
     return [1, 2, 3, *(round(most ** DRAWN.random()) for _ in range(CASES))]
 
 

@@ -22,7 +22,7 @@ OVER = {"robot.track": MODELS, "terrain.height": [0.03, 0.12]}
 
 
 def counted(*args: Any, **options: Any) -> tuple[xr.Dataset, int]:
-    """A sweep, and how many runs it simulated."""
+    """Return a sweep, and the number of runs that it simulated."""
     calls: list[tuple[int, int]] = []
     found = quiet(*args, progress=lambda done, total: calls.append((done, total)), **options)
     return found, calls[-1][1] - calls[0][0]
@@ -250,7 +250,7 @@ def test_the_diagnosis_of_a_seizure_comes_back_as_it_was(tmp_path: Path) -> None
     assert any(tried.intrusion for tried in again.trials)
     assert len(set(again.trials)) == len(again.trials)  # they have hashes
     assert str(again) == str(run.diagnosis)
-    # What a former build said of ground that only the belly rests on.
+    # The diagnosis of a former build for ground under the belly only.
     text = diagnosis_json(again.to_dict()).replace(
         '"mechanism":"straddled"', '"mechanism":"bellied"'
     )

@@ -1,4 +1,4 @@
-"""A damaged store is refused, or what is read of it is what was written."""
+"""A damaged store is refused, or read as it was written."""
 
 import random
 from collections import Counter
@@ -42,7 +42,7 @@ def flip(path: Path, draw: random.Random, count: int = 1) -> None:
 
 
 def flip_the_structure(path: Path, draw: random.Random) -> None:
-    """Change a byte where a page says what is in it."""
+    """Change a byte in the description of a page."""
     content = bytearray(path.read_bytes())
     start = PAGE * draw.randrange(len(content) // PAGE)
     content[start + draw.randrange(100 if start == 0 else 24)] ^= draw.randrange(1, 256)
@@ -54,7 +54,7 @@ def flip_many(path: Path, draw: random.Random) -> None:
 
 
 def cut(path: Path, draw: random.Random) -> None:
-    """Leave a part of it; nothing at all would be a new store."""
+    """Cut it to a part; an empty file would be a new store."""
     content = path.read_bytes()
     path.write_bytes(content[: draw.randrange(1, len(content))])
 
@@ -129,7 +129,7 @@ def test_a_damaged_store_is_refused_or_read_as_it_was(
             try:
                 assert way(path) == whole
             except c2d.StoreError as error:
-                # One byte of the header only keeps SQLite from writing: all else can be read.
+                # One byte of the header only prevents SQLite from writing: all can be read.
                 is_refused |= "attempt to write a readonly database" not in str(error)
         assert is_refused == (findings != ())
         count["refused" if is_refused else "harmless"] += 1
@@ -161,7 +161,7 @@ def test_a_changed_column_is_reported_with_its_row(path: Path, column: str, valu
         connection.execute(f"UPDATE run SET {column} = {value} WHERE rowid = 3")
     with pytest.raises(c2d.StoreError, match=r"row 3 \(run .*\) is damaged: its") as caught:
         c2d.table(path)
-    assert str(caught.value).isascii()  # what any terminal prints
+    assert str(caught.value).isascii()  # characters that any terminal prints
     (damage,) = c2d.check_store(path)
     assert (damage.row, damage.message) == (3, "its checksum is another")
 
@@ -272,7 +272,7 @@ def test_a_store_of_the_former_format_that_was_killed_can_be_opened(tmp_path: Pa
 
 def test_a_store_whose_list_of_tables_is_lost_is_no_new_one(path: Path) -> None:
     content = bytearray(path.read_bytes())
-    content[103:105] = bytes(2)  # how many tables and indices the first page lists
+    content[103:105] = bytes(2)  # the number of tables and indices on the first page
     path.write_bytes(content)
     for use in (c2d.table, c2d.check_store, c2d.join_stores):
         with pytest.raises(c2d.StoreError, match="is damaged: no crawler2d makes such tables"):

@@ -1,4 +1,4 @@
-"""What a store that cannot be used says, word for word: which file, why, and what helps."""
+"""Errors of unusable stores, word for word: file, reason and remedy."""
 
 import hashlib
 import os
@@ -36,14 +36,14 @@ def path(sound: Path, tmp_path: Path) -> Path:
 
 
 def said(use: Callable[[Path], object], path: Path) -> str:
-    """What the error of a use says, with {path} for the file."""
+    """The error of an operation, with {path} for the file."""
     with pytest.raises(c2d.StoreError) as caught:
         use(path)
     return str(caught.value).replace(str(path), "{path}")
 
 
 def executed(statement: str) -> Callable[[Path], None]:
-    """Return what executes a statement in a store."""
+    """Return a function that executes a statement in a store."""
 
     def execute(path: Path) -> None:
         with opened(path) as connection:
@@ -53,7 +53,7 @@ def executed(statement: str) -> Callable[[Path], None]:
 
 
 def replaced(content: bytes) -> Callable[[Path], None]:
-    """Return what writes something else in its place."""
+    """Return a function that replaces the file by something else."""
 
     def replace(path: Path) -> None:
         path.write_bytes(content)

@@ -1,4 +1,4 @@
-"""A store whose process is killed, or whose disk is full, at any moment is whole."""
+"""A store stays intact if its process is killed or its disk is full at any moment."""
 
 import itertools
 import os
@@ -48,7 +48,7 @@ def test_a_store_killed_while_created_is_opened_again(tmp_path: Path, every: int
 
 
 def fill(path: Path, rows: list[Row], limit: int = resource.RLIM_INFINITY) -> None:
-    """Add rows one by one, and count them in a file beside; files can grow to a limit [bytes]."""
+    """Add rows one by one, and count them in another file; files can grow to a limit [bytes]."""
     count = os.open(path.with_suffix(".count"), os.O_CREAT | os.O_WRONLY)
     resource.setrlimit(resource.RLIMIT_FSIZE, (limit, resource.RLIM_INFINITY))
     try:
@@ -62,7 +62,7 @@ def fill(path: Path, rows: list[Row], limit: int = resource.RLIM_INFINITY) -> No
 
 
 def filled(path: Path) -> tuple[int, str]:
-    """How many rows had been added, and why there were no more."""
+    """The number of added rows, and the reason why there were no more."""
     try:
         text = path.with_suffix(".count").read_text()
     except FileNotFoundError:
@@ -71,7 +71,7 @@ def filled(path: Path) -> tuple[int, str]:
 
 
 def holds(path: Path, rows: list[Row]) -> int:
-    """How many rows a store holds, which are the first ones; and that it goes on from there."""
+    """Return the number of rows of a store, check that they are the first, and continue it."""
     with Store(path, TRIALS) as store:
         found = store.read([row.identity for row in rows])
         first = {row.identity: told(row) for row in rows[: len(found)]}
@@ -105,7 +105,7 @@ def test_a_disk_that_is_full_at_any_size_keeps_what_was_added(
     counts = []
     for pages in range(0, 40, every):
         path = tmp_path / f"{pages}.sqlite"
-        # A write that does not fit ends in a part of it.
+        # A write that does not fit is done in part.
         is_killed(partial(fill, path, rows, 4096 * pages + 100), 10**6)
         added, why = filled(path)
         assert "the disk is full or fails" in why or (added, why) == (len(rows), "")

@@ -1,4 +1,4 @@
-"""Where a store may be: read where nothing can be written, written by one process, still there."""
+"""Places of stores: readable without write access, written by one process, and not removed."""
 
 import os
 import shutil
@@ -95,10 +95,10 @@ def test_no_second_writer_gets_in_by_another_name(tmp_path: Path) -> None:
     path, link, other = (tmp_path / name for name in ("a.sqlite", "b.sqlite", "c.sqlite"))
     link.symlink_to(path)
     with Store(link):
-        # SQLite's own files alone lie beside it.
+        # Only SQLite's own files are next to it.
         beside = {each.name for each in tmp_path.iterdir()} - {"a.sqlite", "b.sqlite"}
         assert beside == {"a.sqlite-wal", "a.sqlite-shm"}
-        assert read(path) == {}  # whose end unlocks nothing
+        assert read(path) == {}  # the end of which unlocks nothing
         for name in (path, link, tmp_path / "." / "a.sqlite"):
             with pytest.raises(c2d.StoreError, match="is being written by another"):
                 Store(name)
@@ -125,7 +125,7 @@ def test_a_store_that_another_process_writes_is_refused_until_it_has_ended(tmp_p
         before = _next_descriptor()
         with pytest.raises(c2d.StoreError, match="is being written by another"):
             Store(path)
-        assert _next_descriptor() == before  # what was refused is closed
+        assert _next_descriptor() == before  # refused files are closed
         writer.communicate("")
     Store(path).close()
 
@@ -141,7 +141,7 @@ def test_closing_the_file_elsewhere_lets_no_second_writer_in_for_long(tmp_path: 
     path = tmp_path / "a.sqlite"
     command = [sys.executable, "-c", f"{OPEN}print('opened', flush=True); input()", str(path)]
     with Store(path) as store:
-        path.read_bytes()  # which ends every lock of this process
+        path.read_bytes()  # which releases every lock of this process
         store.add([])
         told = subprocess.run(command, check=False, capture_output=True, text=True)
         assert "is being written by another" in told.stderr

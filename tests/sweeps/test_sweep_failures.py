@@ -1,4 +1,4 @@
-"""What a sweep refuses, and what it keeps where a run fails or is interrupted."""
+"""Refusals of sweeps, and stored runs after failures and interrupts."""
 
 import os
 import signal
@@ -157,7 +157,7 @@ def test_a_run_that_diverged_is_named_in_a_note(monkeypatch: pytest.MonkeyPatch)
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no SIGINT to itself")
 def test_ctrl_c_keeps_the_finished_runs() -> None:
-    solver = c2d.Solver(time_step=1e-3)  # steps of an accuracy would soon be at the end
+    solver = c2d.Solver(time_step=1e-3)  # steps with an accuracy would soon be at the end
     long = Scenario(ROBOT, c2d.terrains.flat(length=900.0), goal=800.0, solver=solver)
     over = {"duration": [0.1, 10_000.0]}
     timer = threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT))
@@ -192,7 +192,7 @@ def test_a_missing_xarray_names_its_extra(monkeypatch: pytest.MonkeyPatch) -> No
     ],
 )
 def test_a_command_that_a_schedule_replaces_is_not_swept(drive: c2d.Drive, how: Any) -> None:
-    """All rows would be alike: a schedule that begins at 0 s leaves no time for another speed."""
+    """All rows would be equal: a schedule that begins at 0 s leaves no time for another speed."""
     base = BASE.replace({"robot": c2d.robots.engineer(), "drive": drive, "duration": 0.05})
     with refusing(SAID, "must not be swept or drawn where drive") as caught:
         quiet(base, **{"over": {}, **how})

@@ -1,4 +1,4 @@
-"""What is not known is sampled in an outer loop, and gives a band of rates."""
+"""Unknowns are sampled in an outer loop, and give a band of rates."""
 
 import json
 import warnings
@@ -156,7 +156,7 @@ def test_a_robot_without_belly_and_one_of_ones_own_have_ranges_too() -> None:
 
 
 def test_rotors_that_a_robot_does_not_state_follow_from_its_torque_and_speed() -> None:
-    """As run-up times: 0.016 to 0.1 s, each octave alike."""
+    """As run-up times of 0.016 to 0.1 s, log-uniform."""
     rotor, of_arm = "robot.drivetrain.rotor_inertia", "robot.flippers.rotor_inertia"
     own = c2d.Robot.simple(10.0, axle_distance=0.3, radius=0.05, max_speed=0.5)
     belt_radius = own.outline.rear_radius - own.outline.grouser_height
@@ -186,7 +186,7 @@ def test_a_preset_without_rotors_has_none_to_draw(name: str) -> None:
 
 @pytest.mark.parametrize("name", PRESETS)
 def test_a_presets_rotors_are_in_the_middle_of_their_ranges(name: str) -> None:
-    """Geometrically, to two digits: half of the last one is at most 5 %."""
+    """The geometric mean, to two digits: half of the last one is at most 5 %."""
     robot = PRESETS[name]()
     assert robot.flippers is not None
     ranges = c2d.unknowns.of_robot(robot)

@@ -62,7 +62,7 @@ def simple(number: int) -> c2d.Robot:
 
 
 def modelled(rng: Generator, robot: c2d.Robot) -> c2d.Robot:
-    """The robot on a model of its track."""
+    """The robot with a model of its track."""
     outline = robot.outline
     radius = min(outline.front_radius, outline.rear_radius)
     name = MODELS[rng.integers(len(MODELS))]
@@ -157,7 +157,7 @@ def draw(rng: Generator) -> tuple[str, Scenario]:
         gait = [None, c2d.Climb(), c2d.Hold(float(rng.uniform(-0.4, 1.0)))][kind]
     size = max(robot.outline.front_radius, robot.outline.rear_radius)
     terrain = ground(rng, size)
-    # The second judge knows free wheels on one lane alone.
+    # The second judge knows free wheels only on one lane.
     while robot.track == c2d.ForceTrack(support="wheels") and terrain.kind in NO_FREE_WHEELS:
         terrain = ground(rng, size)
     speed = min(0.4, robot.drivetrain.max_speed)

@@ -1,4 +1,4 @@
-"""Every claim of the sentences of many stops, held against tables, geometry and branches."""
+"""Every claim in the sentences of many stops is compared with tables, geometry and branches."""
 
 import collections
 from collections.abc import Callable

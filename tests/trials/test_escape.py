@@ -1,6 +1,6 @@
-"""Escape forces: below the lower level a robot stays, above the upper one it gets on.
+"""Escape forces: below the lower level a robot stays, above the upper one it gets free.
 
-The push is applied in another way than it was measured: it rises evenly, in five seconds.
+The push is applied differently from the measurement: it rises linearly, in five seconds.
 """
 
 import collections
@@ -21,7 +21,7 @@ RISE, HOLD = 5.0, 4.0  # [s]
 
 
 def gets_on(run: c2d.Run, force: float) -> bool:
-    """Whether a robot gets ahead of where it had come under a push that rises evenly and stays."""
+    """Whether a robot gets farther than before under a push that rises linearly and stays."""
     direction = math.copysign(1.0, run.scenario.drive.speed)
     pushed = run.branch(push=(direction * force, RISE), duration=RISE + HOLD)
     ahead = (direction * pushed.position[:, 0]).max() - (direction * run.position[:, 0]).max()

@@ -1,4 +1,4 @@
-"""Known seizures and false alarms, on robots of others."""
+"""Known seizures and false alarms of public robots."""
 
 from dataclasses import replace
 from typing import Any
@@ -7,7 +7,7 @@ import pytest
 
 import crawler2d as c2d
 
-# The public Engineer has arms of which only the wheel at the tip is modelled.
+# The public Engineer has arms with only the wheel at the tip.
 pytestmark = pytest.mark.filterwarnings("ignore::crawler2d.ScenarioWarning")
 
 FRICTION = 0.5  # of the wheels in the public model
@@ -16,7 +16,7 @@ KNIVES = (0.075, 0.08, 0.09, 0.095, 0.10, 0.11, 0.12)  # [m]
 
 
 def held(angle: float, torque: float, height: float) -> c2d.Scenario:
-    """The Engineer on its public wheels with weak motors, its flippers held."""
+    """The Engineer on its public wheels with weak motors and fixed flippers."""
     robot = c2d.robots.engineer(track="public")
     robot = replace(robot, drivetrain=replace(robot.drivetrain, max_torque=torque))
     drive = c2d.Drive(gait=c2d.Hold(angle))
@@ -33,7 +33,7 @@ def test_a_front_wheel_at_a_wall_is_not_in_the_pocket_of_the_flipper_beside_it()
 
 @pytest.mark.parametrize("kind", ["steps", "knife edges", "barriers", "fields"])
 def test_absolem_seizes_in_the_pockets_of_its_flippers(kind: str) -> None:
-    """No belt comes into these poses; set down clear of the ground, one gets away."""
+    """No belt gets into these poses; moved clear of the ground, one gets free."""
     on = c2d.terrains
     grounds: dict[str, list[Any]] = {
         "steps": [on.step(h, friction=FRICTION) for h in STEPS],

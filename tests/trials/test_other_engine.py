@@ -1,4 +1,4 @@
-"""Jams of round wheels in another engine: at rest in the pose of the stop, the wheels turning."""
+"""Jams of round wheels in another engine: at rest in the pose of the stop, with turning wheels."""
 
 import math
 from collections.abc import Callable
@@ -47,7 +47,7 @@ def jams() -> list[c2d.Run]:
 
 
 def set_at_rest(run: c2d.Run) -> tuple[Any, Any]:
-    """Build the robot in its last pose; its wheels are driven as it was commanded."""
+    """Build the robot in its last pose, with its wheels driven as commanded."""
     robot, terrain = run.scenario.robot, cast("Any", run.scenario.terrain)
     friction = float(terrain.friction)
     space = pymunk.Space()
@@ -86,13 +86,13 @@ def set_at_rest(run: c2d.Run) -> tuple[Any, Any]:
         finish(pymunk.Circle(wheel, radius), 1, 1.0, space)
         pin = pymunk.PivotJoint(chassis, wheel, (px, py), (0.0, 0.0))
         pin.error_bias, pin.collide_bodies = math.exp(-60.0), False
-        # Of one motor a track every wheel keeps its speed.
+        # With one motor per track, every wheel keeps its speed.
         space.add(pin, pymunk.SimpleMotor(chassis, wheel, speed / radius))
     return space, chassis
 
 
 def finish(shape: Any, kind: int, friction: float, space: Any) -> None:
-    """Give a shape its friction; the engine multiplies that of two, so the robot's is 1."""
+    """Set the friction of a shape; the engine multiplies two coefficients, so the robot's is 1."""
     shape.friction, shape.filter = friction, FILTERS[kind]
     space.add(shape)
 

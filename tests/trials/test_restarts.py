@@ -1,4 +1,4 @@
-"""Trials from other starts: the robot lifted off the ground at its stop, and set down nearby."""
+"""Trials from other starts: the robot is lifted at its stop, and set down nearby."""
 
 import collections
 import json

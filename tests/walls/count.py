@@ -1,4 +1,4 @@
-"""Counts code: `python -m tests.walls.count [FOLDER ...]`, by default of all that is no test.
+"""Counts code: `python -m tests.walls.count [FOLDER ...]`, by default everything except tests.
 
 A line of code is one that is not blank, comment or docstring. Tests are left out.
 """
@@ -39,7 +39,7 @@ def rust_code(text: str) -> int:
 
 
 def row(folder: str, files: list[Path]) -> str:
-    """Say how many files and lines a folder has."""
+    """Return the row with the numbers of files and lines of a folder."""
     texts = [path.read_text(encoding="utf-8") for path in files]
     code = [
         (python_code if path.suffix == ".py" else rust_code)(text)

@@ -1,4 +1,4 @@
-"""The two houses of this project, and how the files of each are read."""
+"""The two houses of this project, core and package, and how their files are read."""
 
 from collections.abc import Collection
 

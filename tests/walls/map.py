@@ -1,4 +1,4 @@
-"""Draws docs/rooms.svg: the rooms of core and package, and what they import of each other."""
+"""Draws docs/rooms.svg: the rooms of core and package, and imports between them."""
 
 from collections import Counter
 from pathlib import Path
@@ -15,16 +15,16 @@ from tests.walls.rooms import ROOT, House
 
 # After Okabe and Ito's palette, and dark enough for white words: readable on white and on black.
 COLORS = ("#0072B2", "#C65200", "#00845F", "#B0568C", "#2F86BE", "#9A7206")
-# What lies outside of the boxes has to be read on white and on black, too.
+# Text outside of the boxes must be readable on white and on black, too.
 BESIDE = "#808080"
 
-# They make names public from everywhere; as arrows that would say nothing.
+# They make names from all rooms public, so arrows would have no meaning.
 DOORS = ("lib.rs", "__init__.py")
 
-# Of a room, in inches, which are the units of the drawing.
+# Size of a room in inches, the unit of the drawing.
 WIDTH, HEIGHT, GAP = 2.3, 0.46, 0.26
 STEP = HEIGHT + GAP
-# From the middle of one column to that of the other, and how far the widest arc reaches out.
+# Distance between the middles of the columns, and width of the widest arc.
 APART, REACH = 4.6, 1.5
 
 
@@ -35,10 +35,10 @@ def column(ax: Axes, house: House, middle: float, outwards: int, title: str) -> 
         here, there = house.floor(each.file), house.floor(each.imported)
         if here is None or there is None or house.rooms[here] in DOORS:
             continue
-        if there < here:  # else the walls say so
+        if there < here:  # otherwise the tests of walls fail
             counts[here, there] += 1
     farthest = max((upper - lower for upper, lower in counts), default=1)
-    # Long ones first, so that short ones lie over them.
+    # Long ones first, so that short ones are above them.
     for (upper, lower), count in sorted(counts.items(), key=lambda item: item[0][1] - item[0][0]):
         if upper - lower == 1:
             line = step(middle - outwards * WIDTH / 4, upper, lower)
@@ -87,25 +87,25 @@ def box(ax: Axes, middle: float, floor: int, room: str, files: int) -> None:
 
 
 def step(x: float, upper: int, lower: int) -> Line:
-    """Lead from a room to the one below it."""
+    """Draw an arrow from a room to the one below it."""
     return Line([(x, upper * STEP), (x, lower * STEP + HEIGHT)])
 
 
 def arc(side: float, reach: float, ends: tuple[int, int], every: list[tuple[int, int]]) -> Line:
-    """Lead from a room round those between to another, and away from other arcs at their ends."""
+    """Draw an arc from a room to another, round those between, with separate ends."""
     upper, lower = ends
-    # The lower half of a side is for what leaves, the upper for what comes; long ones outside.
+    # The lower half of a side is for outgoing arcs, the upper for incoming ones; long ones outside.
     leaving = sorted(b for a, b in every if a == upper and a - b > 1)
     coming = sorted(a for a, b in every if b == lower and a - b > 1)
     out = (len(leaving) - leaving.index(lower)) / (len(leaving) + 1)
     into = (len(coming) - coming.index(upper)) / (len(coming) + 1)
     start, end = upper * STEP + 0.5 * HEIGHT * out, lower * STEP + 0.5 * HEIGHT * (1.0 + into)
-    far = side + 4.0 / 3.0 * reach  # a curve comes to three quarters of its handles
+    far = side + 4.0 / 3.0 * reach  # a curve reaches three quarters of its handles
     return curve([(side, start), (far, start), (far, end), (side, end)])
 
 
 def curve(points: list[tuple[float, float]]) -> Line:
-    """Lead from the first of four points to the last, with the others as handles."""
+    """Draw a curve from the first of four points to the last, with the others as handles."""
     return Line(points, [Line.MOVETO, Line.CURVE4, Line.CURVE4, Line.CURVE4])
 
 
@@ -118,7 +118,7 @@ def arrow(ax: Axes, line: Line, color: str, width: float, style: Any = "-") -> N
 
 
 def bridge(ax: Axes, core: House, package: House) -> None:
-    """Draw what the package knows of the core: its door, by way of the binding."""
+    """Draw the connection of package and core, through the binding."""
     top = core.rooms.index("lib.rs") * STEP + HEIGHT / 2
     bottom = package.rooms.index("_core.pyi") * STEP + HEIGHT / 2
     left, right = WIDTH / 2, APART - WIDTH / 2

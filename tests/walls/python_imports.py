@@ -1,4 +1,4 @@
-"""What the files of a Python package import of each other: anywhere in them, types counted."""
+"""Imports between the files of a Python package, anywhere in them, including types."""
 
 import ast
 from collections.abc import Iterator

@@ -1,4 +1,4 @@
-"""The rooms of docs/rooms.toml, and what breaks their rules."""
+"""The rooms of docs/rooms.toml, and violations of their rules."""
 
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -43,7 +43,7 @@ class House:
 
 
 def violations(house: House, files: Iterable[str], imports: Sequence[Import]) -> Iterator[str]:
-    """Say what is wrong: files without a room, rooms without files, imports from above, circles."""
+    """List violations: files without a room, rooms without files, imports from above, circles."""
     files = sorted(files)
     floors = {file: house.floor(file) for file in files}
     for file, floor in floors.items():
@@ -74,13 +74,13 @@ def violations(house: House, files: Iterable[str], imports: Sequence[Import]) ->
 
 
 def place(house: House, name: str) -> str:
-    """Write where a file or a room lies, from the root of the project if it is part of that."""
+    """Write the path of a file or room, relative to the root of the project if it is inside."""
     folder = house.folder.relative_to(ROOT) if ROOT in house.folder.parents else house.folder
     return f"{folder.as_posix()}/{name}"
 
 
 def circles(edges: Mapping[str, set[str]]) -> Iterator[list[str]]:
-    """Yield one short way round for each knot of files that import each other."""
+    """Yield one short circle for each group of files that import each other."""
     seen: set[str] = set()
     for start in sorted(edges):
         if start in seen:
@@ -104,7 +104,7 @@ def _reached(start: str, edges: Mapping[str, set[str]]) -> set[str]:
 
 
 def _way_round(start: str, edges: Mapping[str, set[str]]) -> list[str]:
-    """Find a shortest way from a file back to itself; none is an empty list."""
+    """Find a shortest circle from a file to itself; empty if there is none."""
     ways = [[start]]
     seen: set[str] = set()
     for way in ways:

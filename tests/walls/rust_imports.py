@@ -1,4 +1,4 @@
-"""What the files of a crate import of each other, unit tests left out."""
+"""Imports between the files of a crate, without unit tests."""
 
 import re
 from collections.abc import Iterator, Mapping
@@ -22,7 +22,7 @@ _PATH = re.compile(r"\b((?:crate|super|self)(?:\s*::\s*\w+)+)")
 
 
 def rust_files(folder: Path) -> dict[str, Module]:
-    """Map the paths of the files of a crate to its modules, those of unit tests left out."""
+    """Map the paths of the files of a crate to its modules, without unit tests."""
     found = {}
     for path in sorted(folder.rglob("*.rs")):
         file = path.relative_to(folder)
@@ -56,7 +56,7 @@ def rust_imports(folder: Path) -> list[Import]:
         code = codes[file]
         for position, path, name in paths(code):
             full = absolute(path, module, by_module)
-            # A room that hands on what is in it does not depend on that.
+            # A room that re-exports its own content does not depend on it.
             if module and exports.get((*module, name)) == full and full[: len(module)] == module:
                 continue
             line = code.count("\n", 0, position) + 1
@@ -67,7 +67,7 @@ def rust_imports(folder: Path) -> list[Import]:
 
 
 def code_of(text: str) -> str:
-    """Blank comments, literals, visibilities and unit tests; what is left stays where it was."""
+    """Blank comments, literals, visibilities and unit tests; the rest keeps its position."""
     code = _VISIBLE_IN.sub(_blank, _NO_CODE.sub(_blank, text))
     while match := _TEST.search(code):
         end = _end_of_item(code, match.end())
@@ -155,7 +155,7 @@ def resolved(
     while full:
         known = {*modules, *(exports.keys() - passed)}
         name = next(full[:end] for end in range(len(full), -1, -1) if full[:end] in known)
-        # A module may hand on a name that one of its modules has; what goes on is in the latter.
+        # A module may re-export a name of one of its modules, which then has the rest of the path.
         is_module = name in modules and (name != full or name not in exports or name in passed)
         if is_module:
             yield modules[name]

@@ -18,7 +18,7 @@ IMPERATIVES = ("Bring", "Feed", "Need", "Proceed", "Speed", "Focus", "Bias", "Em
 
 
 def faults(message: str) -> list[str]:
-    """Say what is wrong with the message of a commit."""
+    """List the faults of the message of a commit."""
     subject, _, body = message.partition("\n")
     first = subject.partition(" ")[0]
     found = []

@@ -1,4 +1,4 @@
-"""CONTRIBUTING.md is a map: what it names is there, and every room has a sentence."""
+"""CONTRIBUTING.md is a map: everything that it names exists, and every room has a sentence."""
 
 import re
 from collections import Counter

@@ -1,4 +1,4 @@
-"""docs/dependencies.md says of each direct dependency why it is there, and of no other."""
+"""docs/dependencies.md gives a reason for each direct dependency, and for no other."""
 
 import re
 import subprocess

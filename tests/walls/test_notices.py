@@ -1,4 +1,4 @@
-"""The wheel says whose libraries its core contains: each of them, in the version that is locked."""
+"""The wheel names all libraries in its core with their authors, in the locked version."""
 
 import re
 import subprocess
@@ -8,7 +8,7 @@ ROOT = Path(__file__).parents[2]
 
 
 def test_every_library_in_the_core_has_its_notice() -> None:
-    """`make notices` writes them anew."""
+    """`make notices` writes them again."""
     command = ["cargo", "tree", "--offline", "--locked", "--package", "crawler2d-python"]
     command += ["--edges", "normal", "--prefix", "none", "--format", "{p}"]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)

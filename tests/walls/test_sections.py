@@ -1,4 +1,4 @@
-"""The equations are in docs/physics.md: every file that computes with them names its section."""
+"""The equations are in docs/physics.md: every file that uses them names its section."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""What the walls notice: small trees of files, each with one fault or with none."""
+"""Violations that the walls detect: small trees of files, each with one fault or none."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -12,13 +12,13 @@ GROUND, UPPER = "ground/", "upper/"
 
 
 def package(folder: Path, texts: Mapping[str, str]) -> House:
-    """Write a package of two rooms; what is not given is empty."""
+    """Write a package of two rooms; missing files are empty."""
     files = {"ground/low.py": "", "upper/high.py": "", **texts}
     return written(folder / "house", files, "nowhere")
 
 
 def crate(folder: Path, texts: Mapping[str, str]) -> House:
-    """Write a crate of two rooms below its `lib.rs`; what is not given is empty."""
+    """Write a crate of two rooms below its `lib.rs`; missing files are empty."""
     files = {"ground/mod.rs": "", "ground/low.rs": "", "upper/mod.rs": "", "upper/high.rs": ""}
     lib = {"lib.rs": "mod ground;\nmod upper;\npub use upper::High;\n"}
     house = written(folder / "src", {**files, **lib, **texts}, "inside a room")
@@ -34,7 +34,7 @@ def written(folder: Path, texts: Mapping[str, str], circles: str) -> House:
 
 
 def faults(house: House) -> list[str]:
-    """What is wrong with a house, without the folder that it is in."""
+    """The violations of a house, without the path of its folder."""
     found = violations(house, files_of(house), imports_of(house))
     return [fault.removeprefix(f"{house.folder.as_posix()}/") for fault in found]
 

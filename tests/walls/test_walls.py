@@ -1,4 +1,4 @@
-"""The walls: what a file imports lies in its own room or below, and files do not go in circles."""
+"""The walls: files import only from their own room or below, and not in circles."""
 
 import pytest
 

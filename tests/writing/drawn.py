@@ -1,4 +1,4 @@
-"""Robots drawn at random that model files can hold: round wheels and smooth belts of all kinds."""
+"""Random robots that model files can represent: round wheels and smooth belts of all kinds."""
 
 import dataclasses
 import math
@@ -55,7 +55,7 @@ def drawn_on_discs(number: int) -> c2d.Robot:
 
 
 def drawn_on_gears(number: int, *, is_tapered: bool) -> c2d.Robot:
-    """Make a random robot on gear wheels, flippers too; grousers taper, or have parallel flanks."""
+    """Make a random robot on gear wheels, also on flippers; grousers may taper."""
     rng = np.random.default_rng([25, number])
     robot = drawn(number, wheels_only=True)
     robot = robot.with_track(_on_gears(rng, robot.track, robot.wheels()["radius"], is_tapered))

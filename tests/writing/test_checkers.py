@@ -1,4 +1,4 @@
-"""The checkers of the formats accept the files, where they are installed."""
+"""The checkers of the formats accept the files, if they are installed."""
 
 import shutil
 import subprocess

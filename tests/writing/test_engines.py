@@ -19,7 +19,7 @@ HELD = {
     "sdf": {**WHEELED, **BELTED},
     "urdf": WHEELED,
 }
-SECONDS, SHARE = 2.0, 0.5  # driven, with this share of the largest speed
+SECONDS, SHARE = 2.0, 0.5  # driven, with this fraction of the largest speed
 
 
 def engine(name: str) -> Any:
@@ -45,7 +45,7 @@ def whole(robot: c2d.Robot) -> np.ndarray:
 
 
 def wheels_of(robot: c2d.Robot) -> list[list[float]]:
-    """[m] Forward and up of the axles of both sides."""
+    """[m] Forward and upward coordinates of the axles of both sides."""
     wheels = robot.wheels()
     return sorted(np.column_stack([wheels["x"], wheels["y"]]).round(9).tolist())
 
@@ -53,13 +53,13 @@ def wheels_of(robot: c2d.Robot) -> list[list[float]]:
 def compare(
     robot: c2d.Robot, mass: float, center: Any, axles: list[np.ndarray], accuracy: float = 1e-9
 ) -> None:
-    """Compare what an engine has with the robot, both in the chassis frame."""
+    """Compare the loaded robot with the original, both in the chassis frame."""
     assert mass == pytest.approx(robot.mass, rel=accuracy)
     assert np.allclose(center, whole(robot), rtol=0.0, atol=accuracy)
     found = sorted(np.array(axles).reshape(-1, 3)[:, [0, 2]].round(9).tolist())
     expected = wheels_of(robot)
     assert len(found) == len(expected)
-    # Sorting sees differences in the last digit.
+    # Sorting depends on differences in the last digit.
     for axle in found:
         assert min(np.hypot(*np.subtract(axle, each)) for each in expected) <= accuracy
 
@@ -94,7 +94,7 @@ def test_bullet_has_the_same_robot(
         states = [bullet.getLinkState(body, i) for i in range(count)]
         centers = [middle, *(state[0] for state in states)]
         names = [bullet.getJointInfo(body, i)[12].decode() for i in range(count)]
-        # The root's frame is the chassis frame; Bullet says where its centre of mass is.
+        # The root's frame is the chassis frame; Bullet returns its centre of mass.
         offset = np.array(bullet.getDynamicsInfo(body, -1)[3])
         origin = np.array(middle) - offset
         axles = [
@@ -139,7 +139,7 @@ DRIVEN = {
 
 
 def driven(mujoco: Any, robot: c2d.Robot) -> Iterator[np.ndarray]:
-    """Drive on level ground at a share of the largest speed; yield the place at each step."""
+    """Drive on level ground at a fraction of the largest speed; yield the position at each step."""
     root = ElementTree.fromstring(robot.to_mjcf().encode())
     world = root.find("worldbody")
     assert world is not None
@@ -170,7 +170,7 @@ def test_it_drives_forward_at_the_commanded_speed_in_mujoco(robot: c2d.Robot) ->
 def test_gear_wheels_drive_forward_in_mujoco() -> None:
     """On their grousers, which roll on a polygon: a little slower than the circle."""
     robot = c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(3, wheel=c2d.GearWheel()))
-    robot = robot.without_rotors()  # which take more of the time to get up to speed
+    robot = robot.without_rotors()  # which take more of the time to reach their speed
     places = np.array(list(driven(engine("mujoco"), robot)))
     assert 0.9 < places[-1, 0] / (SECONDS * SHARE * robot.drivetrain.max_speed) < 1.0
 

@@ -1,4 +1,4 @@
-"""What a model file says, and what is refused by the field that no file holds."""
+"""Contents of model files, and refusals of fields that files cannot represent."""
 
 import dataclasses
 import json
@@ -200,7 +200,7 @@ def test_widths_are_estimated_from_the_gauge() -> None:
 
 
 def attempt(number: int) -> int:
-    """Write a legal robot in all formats; count those that hold it."""
+    """Write a valid robot in all formats; count those that can represent it."""
     robot, count = drawn_robot(Draw(number)), 0
     for name in FORMATS:
         try:

@@ -1,4 +1,4 @@
-"""Rotor inertias are the armature of joints in MJCF, and a comment where there is none."""
+"""Rotor inertias are the armature of joints in MJCF, and a comment in other formats."""
 
 import dataclasses
 import re
@@ -25,7 +25,7 @@ ON_WHEELS = {
 
 @pytest.mark.parametrize("robot", ON_WHEELS.values(), ids=ON_WHEELS)
 def test_rotors_come_back_from_mjcf(robot: c2d.Robot, tmp_path: Path) -> None:
-    """As the force of the motors does: at the ground, whatever the radius of the belt."""
+    """Like the force of the motors: at the ground, whatever the radius of the belt."""
     pytest.importorskip("mujoco")
     robot = with_rotors(robot)
     path = tmp_path / "robot.xml"
@@ -42,7 +42,7 @@ def test_rotors_come_back_from_mjcf(robot: c2d.Robot, tmp_path: Path) -> None:
 @pytest.mark.parametrize("name", ["sdf", "urdf", "mjcf"])
 @pytest.mark.parametrize("robot", ON_WHEELS.values(), ids=ON_WHEELS)
 def test_all_wheels_of_a_side_share_its_torque(robot: c2d.Robot, name: str, tmp_path: Path) -> None:
-    """Those on flippers, too: by the rule by which the simulator shares it among N wheels."""
+    """Also those on flippers, by the rule by which the simulator shares it among N wheels."""
     if name == "mjcf":
         pytest.importorskip("mujoco")
     path = tmp_path / f"robot.{'xml' if name == 'mjcf' else name}"
@@ -80,7 +80,7 @@ def belt_radius(robot: c2d.Robot) -> float:
 
 
 def left_out(text: str) -> list[str]:
-    """Names of what the comment says is left out."""
+    """Names of properties that the comment lists as left out."""
     found = re.search(r"Left out, as [A-Z]+ has no place for it: (.*)\.\n", text)
     return [] if found is None else found[1].split(", ")
 

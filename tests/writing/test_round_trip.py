@@ -1,4 +1,4 @@
-"""A robot that is written and read again is the same robot, in all that the file states."""
+"""A robot that is written and read again is the same, as far as the file states it."""
 
 import dataclasses
 import math
@@ -29,7 +29,7 @@ def read_again(robot: c2d.Robot, name: str, folder: Path) -> c2d.Reading:
 
 
 def frame_of(reading: c2d.Reading) -> tuple[np.ndarray, np.ndarray]:
-    """Middle and axes of the chassis frame of what was read, in the frame of the model.
+    """Origin and axes of the chassis frame of a reading, in the frame of the model.
 
     The end axles of a reading are those of its rearmost and foremost wheels; round more than two
     drums, x is that of the model.
@@ -70,7 +70,7 @@ def discs_of(robot: c2d.Robot) -> dict[str, list[tuple[float, ...]]]:
 
 
 def tolerance_of(belly: np.ndarray, name: str) -> float:
-    """[m] By how much boxes cut off corners sharper than a right angle; readers round."""
+    """[m] Largest cut of corners sharper than a right angle by boxes; readers round."""
     if name == "mjcf":
         return 1e-5
     edges = np.roll(belly, -1, axis=0) - belly
@@ -83,7 +83,7 @@ def tolerance_of(belly: np.ndarray, name: str) -> float:
 def differences(
     robot: c2d.Robot, reading: c2d.Reading, name: str, accuracy: float = 1e-9
 ) -> Iterator[str]:
-    """What the file states, and was not read as it was written."""
+    """The values of the file that were not read as written."""
     again, (middle, axes) = reading.robot, frame_of(reading)
     force = robot.drivetrain.max_torque / (robot.outline.rear_radius - robot.outline.grouser_height)
     has_wheels = bool((robot.wheels()["carrier"] == "chassis").any())
@@ -96,7 +96,7 @@ def differences(
         "friction": (reading.friction, 0.6),
         "speed": (again.drivetrain.max_speed, robot.drivetrain.max_speed),
     }
-    if has_wheels:  # a belt has no motor in any format, nor a mass that moves
+    if has_wheels:  # a belt has no motor and no moving mass in any format
         found = again.drivetrain.max_torque / again.outline.rear_radius
         pairs["force"] = (found, force)
         pairs["moving mass"] = (again.track_mass, robot.track_mass)

@@ -1,4 +1,4 @@
-"""Gear wheels that are written and read again are the same, as far as corners are kept."""
+"""Gear wheels that are written and read again are the same, within the rounding of corners."""
 
 import dataclasses
 import json
@@ -34,7 +34,7 @@ FIELDS = "grouser_count", "grouser_height", "tip_thickness", "base_thickness"
 
 
 def other_wheels(robot: c2d.Robot, reading: c2d.Reading, accuracy: float) -> Iterator[str]:
-    """The fields of gear wheels, and by which share of their spacing the next one is ahead."""
+    """The fields of gear wheels, and the fraction of their spacing to the next one."""
     again = reading.robot
     yield from _other_wheel(again.track, robot.track, accuracy)
     arms, others = again.flippers, robot.flippers
@@ -49,7 +49,7 @@ def other_wheels(robot: c2d.Robot, reading: c2d.Reading, accuracy: float) -> Ite
 
 
 def is_stated(robot: c2d.Robot) -> bool:
-    """Whether the file states all that turned the wheels.
+    """Whether the file states everything that turned the wheels.
 
     A raised flipper has turned its wheels by the radius of the sprocket, the rear end of the
     outline. Small wheels in a line have another.
@@ -82,7 +82,7 @@ def _other_wheel(
 
 
 def _told_of_chassis(robot: c2d.Robot, reading: c2d.Reading) -> Iterator[str]:
-    """What is told of the wheels of the chassis, unless it is the tilt of the frame they are in."""
+    """The notes about wheels of the chassis, except for the tilt of their frame."""
     _, (ahead, _) = frame_of(reading)
     turn = -math.atan2(ahead[1], ahead[0])
     words = [each for each in (*reading.warnings, *reading.notes) if "flipper_wheel" not in each]
@@ -95,7 +95,7 @@ def _told_of_chassis(robot: c2d.Robot, reading: c2d.Reading) -> Iterator[str]:
 
 
 def _told_of_flippers(robot: c2d.Robot, reading: c2d.Reading, accuracy: float) -> Iterator[str]:
-    """What is told of wheels of flippers, unless they start so much otherwise in what was read."""
+    """The notes about wheels of flippers, unless they start differently by that much."""
     assert robot.flippers is not None
     wheels, found = starts(robot), starts(reading.robot)
     for end in (end for end in ("front", "rear") if end in wheels):
@@ -103,7 +103,7 @@ def _told_of_flippers(robot: c2d.Robot, reading: c2d.Reading, accuracy: float) -
         words = [each for each in words if f"{end}_left_flipper_wheel" in each]
         turn, off = (_degrees(words, rule) for rule in (TURNED, OFF))
         left = _wrapped(wheels[end] - found[end] - turn, spacing(robot.flippers.track))
-        # Words have three digits. Of UNTOLD nothing is said, of a turn or else.
+        # Texts have three digits. Below UNTOLD, there is no note.
         rounding = 0.005 * (abs(turn) + off) + accuracy / SMALLEST
         most = off + rounding + (UNTOLD if not off else 0.0) + (UNTOLD if not turn else 0.0)
         if not off - rounding <= np.abs(left).max() <= most:
@@ -111,19 +111,19 @@ def _told_of_flippers(robot: c2d.Robot, reading: c2d.Reading, accuracy: float) -
 
 
 def _wrapped(turned: Any, angle: float) -> Any:
-    """[rad] Turned by whole spacings of grousers, a wheel is the same."""
+    """[rad] Wrap an angle to one spacing of grousers, after which a wheel looks the same."""
     return (turned + 0.5 * angle) % angle - 0.5 * angle
 
 
 def _degrees(words: list[str], rule: str) -> float:
-    """[rad] The angle that a sentence gives, 0 if none does."""
+    """[rad] The angle in a sentence, 0 without one."""
     found = [match[1] for each in words if (match := re.search(rule, each))]
     assert len(found) <= 1
     return math.radians(float(found[0])) if found else 0.0
 
 
 def starts(robot: c2d.Robot) -> dict[str, np.ndarray]:
-    """[rad] Directions of a grouser of each wheel over the chassis at the start, by end."""
+    """[rad] Initial direction of a grouser of each wheel relative to the chassis, by end."""
     text = robot._at_rest()
     found = {}
     for carrier in carriers_of(json.loads(text)["robot"], text):

@@ -1,4 +1,4 @@
-"""Gear wheels, belts and bellies of a file have the outlines that they have in side view."""
+"""Gear wheels, belts and bellies of a file have the same outlines as in side view."""
 
 import dataclasses
 import json
@@ -27,7 +27,7 @@ def tree_of(robot: c2d.Robot, target: Format = SDF) -> Tree:
 
 
 def depth_in(shape: Shape, points: np.ndarray) -> np.ndarray:
-    """[m] How deep points of the side view lie in a shape; negative outside of it."""
+    """[m] Depth of points of the side view in a shape; negative outside."""
     if shape.kind == "cylinder":
         off = points - shape.pose.place[[0, 2]]
         return np.asarray(shape.radius - np.hypot(*off.T))
@@ -46,7 +46,7 @@ def deepest(shapes: tuple[Shape, ...], points: np.ndarray) -> np.ndarray:
 
 
 def dense(polygon: np.ndarray) -> np.ndarray:
-    """Points along a polygon, its corners among them."""
+    """Points along a polygon, including its corners."""
     shares = np.linspace(0.0, 1.0, 20, endpoint=False)[:, None]
     ends = zip(polygon, np.roll(polygon, -1, axis=0), strict=True)
     return np.concatenate([a + shares * (b - a) for a, b in ends])

@@ -1,4 +1,4 @@
-"""The tree that is written is the tree that is read, for every model that a format holds."""
+"""The tree that is read equals the one written, for every model that a format can represent."""
 
 from pathlib import Path
 from typing import Any
@@ -36,7 +36,7 @@ def close(got: Any, expected: Any, accuracy: float = 1e-9) -> bool:
 
 def same_shape(got: Shape, expected: Shape) -> None:
     assert got.kind == expected.kind
-    if expected.kind == "hull":  # MuJoCo keeps corners as float32, in an order of its own
+    if expected.kind == "hull":  # MuJoCo stores corners as float32, in its own order
         away = np.linalg.norm(got.points[:, None] - expected.points[None], axis=2)
         assert away.min(axis=0).max() < 1e-6
         assert away.min(axis=1).max() < 1e-6

@@ -1,4 +1,4 @@
-"""Worlds of a robot before an obstacle: the ground is the terrain, and MuJoCo drives over it."""
+"""Worlds of a robot at an obstacle: the ground is the terrain, and MuJoCo drives over it."""
 
 import dataclasses
 import importlib
@@ -56,7 +56,7 @@ def values(element: ElementTree.Element, path: str) -> list[float]:
 def pieces(
     world: ElementTree.Element,
 ) -> tuple[float, list[tuple[np.ndarray, tuple[float, float], float]]]:
-    """[m, -] Height of the plane; outline, sides and friction of each piece, as SDF means them."""
+    """[m, -] Height of the plane; outline, sides and friction of each piece, as defined by SDF."""
     level, found = None, []
     for collision in world.iterfind("model/link[@name='ground']/collision"):
         x, y, z, *angles = values(collision, "pose")
@@ -84,7 +84,7 @@ def pieces(
 
 
 def top_of(outline: np.ndarray, x: float) -> float:
-    """[m] The highest point of a convex polygon at a place; -inf beside it."""
+    """[m] The highest point of a convex polygon at a position; -inf beside it."""
     heights = []
     for (x0, y0), (x1, y1) in zip(outline, np.roll(outline, -1, axis=0), strict=True):
         if min(x0, x1) <= x <= max(x0, x1):
@@ -226,7 +226,7 @@ def test_the_robot_stands_on_the_ground_and_not_in_it(
 
 
 def driven(folder: Path, terrain: Any, seconds: float = 3.0) -> Any:
-    """[m] Where the chassis of the robot on wheels is in the end."""
+    """[m] Final position of the chassis of the robot on wheels."""
     mujoco, model, data = scene(folder, WHEELS, terrain)
     data.ctrl[:] = 0.5 * model.actuator_ctrlrange[:, 1]
     start = data.qpos[:3].copy()

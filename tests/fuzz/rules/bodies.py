@@ -26,11 +26,11 @@ class Body:
 
 
 class Unbuilt(Exception):
-    """A model cannot be built, or it is not known whether it can: its verdict says why."""
+    """A model cannot be built, or may be impossible; its verdict says why."""
 
 
 def must(kept: bool) -> None:
-    """Go on only if a rule is kept."""
+    """Continue only if a rule is obeyed."""
     if not kept:
         raise Unbuilt
 
@@ -60,7 +60,7 @@ class Outline:
         return min(disc[2] for disc in self.discs)
 
     def count(self, length: float, bounds: tuple[int, int], v: Verdict) -> int:
-        """How many grousers are on a belt of a length, at their pitch."""
+        """Number of grousers on a belt of a length, at their pitch."""
         pitch, (least, most) = float(self.given["grouser_pitch"]), bounds
         path, rule = "robot.outline.grouser_pitch", f"at most {most} pitches on a belt"
         must(v.at_least(rule, path, pitch, length / (most + 0.5), exact=False))

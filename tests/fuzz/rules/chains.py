@@ -57,7 +57,7 @@ def chain(path: str, track: Json, outline: Outline, robot: Json, v: Verdict) -> 
 
 
 def _guide(outline: Outline, plate: float, least: float) -> list[Body]:
-    """A guide lies inside the plates by a share of their pitch, at most by half of its radius."""
+    """A guide is inside the plates by a fraction of their pitch, at most by half of its radius."""
 
     def root(outer: float, pitch: float) -> float:
         inside = outer - outline.height - plate

@@ -32,7 +32,7 @@ class Number:
     left_out: bool = False
 
     def is_far_inside(self, number: float) -> bool:
-        """Whether it is nowhere near a limit, nor near 0."""
+        """Whether it is far from any limit and from 0."""
         low, high = self.low, self.high
         far = abs(number) > 1e-280 and low < number < high
         return far and number - low > 1e-5 * abs(low) and high - number > 1e-5 * abs(high)
@@ -334,7 +334,7 @@ ENDS = ("axle_distance", "front_radius", "rear_radius")
 
 
 class Reader:
-    """Reads the fields of a scenario; what is broken is in its verdict, by path."""
+    """Reads the fields of a scenario; broken rules are in its verdict, by path."""
 
     def __init__(self, verdict: Verdict) -> None:
         self.verdict = verdict
@@ -342,7 +342,7 @@ class Reader:
         """Rule and path of fields that are too many; the others are read all the same."""
 
     def whole_text(self, value: Json, path: str = "", depth: int = 0) -> None:
-        """Hold every value to the rules of all texts, whatever field it is in."""
+        """Check every value against the rules for all JSON, whatever its field."""
         if isinstance(value, (dict, list)):
             if depth >= DEEPEST:
                 self.verdict.need("a text nests 12 levels", "scenario", kept=False)
@@ -400,7 +400,7 @@ class Reader:
         return {name: what for name, what in fields.items() if name not in unused}
 
     def field(self, path: str, value: Json, what: Field, rule: str) -> None:
-        """Read what a field holds."""
+        """Read the value of a field."""
         need = self.verdict.need
         if isinstance(what, Number) and self.verdict.limits is not None:
             self._limits(path, what, rule, self.verdict.limits)
@@ -427,7 +427,7 @@ class Reader:
     def _limits(
         self, path: str, what: Number, rule: str, limits: list[tuple[str, str, float]]
     ) -> None:
-        """Say where a number has its limits, also of a field that is null."""
+        """Record the limits of a number, also if the field is null."""
         ends = [(f"{rule} not below", what.low), (f"{rule} not above", what.high)]
         limits += [(name, path, limit) for name, limit in ends]
 

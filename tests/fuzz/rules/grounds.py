@@ -70,7 +70,7 @@ def corners_of(terrain: Json) -> tuple[list[Point], float, float]:
 
 
 def check_profile(path: str, terrain: Json, v: Verdict) -> Ground | None:
-    """Hold one profile to its rules; None if there is no ground."""
+    """Check one profile; None if there is no ground."""
     given, goal, radius = corners_of(terrain)
     if terrain["kind"] == "points":
         frictions = terrain.get("segment_friction")
@@ -160,7 +160,7 @@ def _check_arcs(path: str, edges: list[Edge], radius: float, v: Verdict) -> None
 
 
 def check(scenario: Json, v: Verdict) -> Ground | None:
-    """Hold the ground of a scenario to its rules."""
+    """Check the ground of a scenario."""
     terrain, gauge = scenario["terrain"], scenario["robot"]["gauge"]
     kind = terrain["kind"]
     if kind == "lanes":
@@ -173,7 +173,7 @@ def check(scenario: Json, v: Verdict) -> Ground | None:
 
 
 def check_lanes_apart(terrain: Json, v: Verdict) -> None:
-    """Hold the lanes that can be read to their own rules, beside one that cannot."""
+    """Check the lanes that can be read if another one cannot."""
     if isinstance(terrain, dict) and terrain.get("kind") == "lanes":
         for name in ("left", "right", "middle"):
             lane, path = terrain.get(name), f"terrain.{name}"
@@ -182,7 +182,7 @@ def check_lanes_apart(terrain: Json, v: Verdict) -> None:
 
 
 def _as_read(value: Json) -> Json:
-    """The same without what may be left out; whole numbers equal others."""
+    """The same without optional fields; integers equal floats."""
     return {k: each for k, each in value.items() if k != "segment_friction" or each is not None}
 
 
@@ -231,13 +231,13 @@ def _check_barrier(terrain: Json, gauge: float, v: Verdict) -> Ground:
 
 
 def _least_step(numbers: list[float]) -> float:
-    """The least difference of any two that are not the same."""
+    """The smallest difference of two different values."""
     ordered = sorted(set(numbers))
     return min(b - a for a, b in pairwise(ordered))
 
 
 def _check_field(terrain: Json, gauge: float, v: Verdict) -> Ground:
-    """Which posts are how high is for the core to draw: known is what holds for all heights."""
+    """The core draws the heights of posts: check what is true for all heights."""
     radius, rise, post = (float(terrain[name]) for name in ("edge_radius", "rise", "post"))
     at, has_barrier = "terrain.edge_radius", terrain["barrier_height"] > 0.0
     length, yaw = terrain["posts"] * post, float(terrain["barrier_yaw"])

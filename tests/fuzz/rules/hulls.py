@@ -1,4 +1,4 @@
-"""The taut belt round discs, from their support function; and round wheels inside it that touch."""
+"""The taut belt round discs from their support function, and touching round wheels inside it."""
 
 from __future__ import annotations
 
@@ -112,7 +112,7 @@ class Walk:
         return places
 
     def farther(self, distance: float, count: int) -> float:
-        """[m] How far so many steps lead, each to the next point at this distance."""
+        """[m] Length of a number of steps, each to the next point at this distance."""
         piece, along, gone = 0, 0.0, 0.0
         for _ in range(count):
             start = self.place(piece, along)
@@ -129,7 +129,7 @@ class Walk:
         return gone
 
     def _at(self, piece: int, start: tuple[float, float], distance: float) -> float:
-        """[m] Where on a piece the distance from a point behind it is this."""
+        """[m] Position on a piece at this distance from a point behind it."""
         _, x, y, angle, radius = self.pieces[piece]
         x, y = x - start[0], y - start[1]
         if radius < 0.0:
@@ -143,7 +143,7 @@ class Walk:
 
 
 def _overlap(discs: Discs, count: int, radius: float) -> float:
-    """[m] By how much so many wheels that touch are more than go round inside a belt."""
+    """[m] Excess length of a number of touching wheels inside a belt."""
     walk = Walk(hull_of(grown(discs, -radius)))
     return walk.farther(2.0 * radius, count) - walk.length
 

@@ -14,7 +14,7 @@ FARTHEST_TURN = 0.7
 
 
 def verdict_on(scenario: Json, *, with_limits: bool = False) -> Verdict:
-    """Say which rules a scenario breaks, given as plain data."""
+    """Return the rules that a scenario, given as plain data, breaks."""
     v = Verdict(limits=[] if with_limits else None)
     reader = Reader(v)
     reader.whole_text(scenario)
@@ -27,7 +27,7 @@ def verdict_on(scenario: Json, *, with_limits: bool = False) -> Verdict:
 
 
 def _check(scenario: Json, v: Verdict) -> None:
-    """Hold it to what joins its fields, as far as they can be read."""
+    """Check rules that involve several fields, as far as these can be read."""
     has_settings = v.is_clean("solver", "criteria")
     parts.check(scenario, v)
     robot = scenario.get("robot")
@@ -47,7 +47,7 @@ def _check(scenario: Json, v: Verdict) -> None:
 
 
 def _check_sizes(scenario: Json, model: robots.Model, v: Verdict) -> None:
-    """Steps short enough for the smallest wheel, intrusions less deep than it is large."""
+    """Steps must be short enough for the smallest wheel, and intrusions smaller than its radius."""
     robot, step = scenario["robot"], scenario["solver"]["time_step"]
     bodies, arms = model.all(), robot["flippers"]
     chain = robot["track"]["kind"] == "segmental"

@@ -13,7 +13,7 @@ WITH_WHEELS = ("line", "circumferential", "hybrid")
 
 
 def check(scenario: Json, verdict: Verdict) -> None:
-    """Hold a scenario to all of them, each where its own fields can be read."""
+    """Check all of them, each if its own fields can be read."""
     v = verdict
     robot = scenario.get("robot")
     if isinstance(robot, dict):
@@ -58,7 +58,7 @@ def _check_speeds(drive: Json, most: float, v: Verdict) -> None:
 
 
 def check_engine(scenario: Json, v: Verdict) -> None:
-    """Chains do not bounce, and rapier has no part of what is our own."""
+    """Chains have no restitution, and rapier none of our own settings."""
     solver, robot, terrain = scenario["solver"], scenario["robot"], scenario.get("terrain")
     if robot["track"]["kind"] == "segmental":
         bounces = solver.get("restitution", 0.0) > 0.0
@@ -110,14 +110,14 @@ def discs_of(outline: Json) -> list[list[float]]:
 
 
 def ends_of(discs: list[list[float]]) -> tuple[list[float], list[float]]:
-    """[m] Those that reach farthest back and forwards; of two the higher one."""
+    """[m] The discs that reach farthest back and forwards; the higher one of two."""
     rear = max(discs, key=lambda disc: (disc[2] - disc[0], disc[1]))
     front = max(discs, key=lambda disc: (disc[2] + disc[0], disc[1]))
     return rear, front
 
 
 def open_track(track: Json) -> Json:
-    """The model itself, or the one that is closed."""
+    """The model itself, or the one inside a closed track."""
     return track["of"] if track["kind"] == "closed" else track
 
 
@@ -161,7 +161,7 @@ def _check_discs(discs: list[list[float]], v: Verdict) -> None:
             apart, least = math.hypot(x - other_x, y - other_y), other - radius
             aside = math.sqrt(max(0.0, least**2 - (y - other_y) ** 2))
             to = {"at": f"{path}[{i}][0]", "there": other_x + math.copysign(aside, x - other_x)}
-            # Nothing is known of the last digit of a distance.
+            # The last digit of a distance is unknown.
             exact, rule = y == other_y or apart == least == 0.0, "no disc lies in another"
             v.at_least(rule, f"{path}[{i}]", apart, least, more=True, exact=exact, **to)
 
@@ -223,7 +223,7 @@ def _check_curve(curve: Json, most: float, v: Verdict) -> None:
 
 
 def _check_track(path: str, track: Json, v: Verdict) -> None:
-    """What a model is by itself; it need not be read as a whole."""
+    """Check rules of a model itself, which may be incomplete."""
     kind, inner = _kind(track), f"{path}.of"
     if kind == "closed" and "of" in track:
         if v.is_clean(inner):
@@ -235,7 +235,7 @@ def _check_track(path: str, track: Json, v: Verdict) -> None:
 
 
 def _kind(value: Json) -> Json:
-    """The kind of an object, if it is one."""
+    """The kind of an object, or nothing if it is not an object."""
     return value.get("kind") if isinstance(value, dict) else None
 
 
@@ -267,7 +267,7 @@ def _has_wheels(track: Json) -> bool:
 
 
 def _check_models(robot: Json, v: Verdict) -> None:
-    """What a model needs of motors and of the number of discs."""
+    """Check the motors and the number of discs that a model needs."""
     track, drivetrain, discs = robot["track"], robot["drivetrain"], discs_of(robot["outline"])
     if drivetrain.get("self_locking", False):
         is_force = open_track(track)["kind"] == "force"
@@ -298,7 +298,7 @@ def _check_arms(robot: Json, arms: Json, v: Verdict) -> None:
     count = 4 if arms["ends"] == "both" else 2
     left = (robot["mass"] - least - robot["track_mass"]) / count
     rule = "arms leave as much for the chassis"
-    # A sum or a quotient: nothing is known where these are the same but for rounding.
+    # A sum or a quotient: the result is unknown if both are equal except for rounding.
     v.at_most(rule, f"{path}.mass", arms["mass"], left, exact=False)
     own, track = open_track(robot["track"])["kind"], arms["track"]
     at = f"{path}.track"

@@ -32,14 +32,14 @@ class Model:
 
 
 def check(robot: Json, v: Verdict) -> Model | None:
-    """Hold a robot to these rules; None if it cannot be built, or nobody knows."""
+    """Check a robot; None if it cannot be built, or this is unknown."""
     discs: Discs = tuple((x, y, radius) for x, y, radius in discs_of(robot["outline"]))
     if len(discs) > 2:
         hull = hull_of(discs)
         for i in range(len(discs)):
             rule, path = "the track bends round each disc", f"robot.outline.discs[{i}]"
             bend, others = hull.bend(i), (*discs[:i], *discs[i + 1 :])
-            # Of two that are the same but for rounding, either may be the one that bends it.
+            # Either of two that are equal except for rounding may be the one that bends it.
             is_double = any(math.dist(discs[i], other) < SAME for other in others)
             if is_double or 0.3 * LEAST_BEND < bend < 3.0 * LEAST_BEND:
                 v.doubt(rule, path)
@@ -108,7 +108,7 @@ def _wheels(path: str, track: Json, outline: Outline, v: Verdict) -> Discs:
     else:
         rule, at = "small wheels fit in the outline", f"{path}.wheel_radius"
         must(v.at_most(rule, at, float(radius), outline.smallest, less=True))
-    # Where they are matters little: inside the outline.
+    # Their exact positions inside the outline matter little.
     count: int = track["count"]
     return ((math.nan, math.nan, float(radius)),) * count
 

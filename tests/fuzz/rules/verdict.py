@@ -1,4 +1,4 @@
-"""What the oracle of valid scenarios says, and how it compares a number with a limit."""
+"""The verdict of the oracle of valid scenarios, and its comparisons of numbers with limits."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ ANYWHERE = "*"
 
 @dataclass
 class Verdict:
-    """What an oracle says of a scenario."""
+    """The oracle's verdict on a scenario."""
 
     broken: dict[str, set[str]] = field(default_factory=dict)
     """Rules by the path of the field that breaks them."""
@@ -41,7 +41,7 @@ class Verdict:
         )
 
     def need(self, rule: str, path: str, kept: bool) -> bool:
-        """Hold one to a rule of which there is no more or less: kept, it is at its border."""
+        """Check a rule without degrees; if it is obeyed, the value is at its border."""
         if kept:
             self.at_border.add(rule)
         else:
@@ -49,7 +49,7 @@ class Verdict:
         return kept
 
     def doubt(self, rule: str, path: str) -> None:
-        """Say that nothing is known."""
+        """Record that the verdict is unknown."""
         self.unknown.setdefault(path, set()).add(rule)
 
     def at_most(self, rule: str, path: str, value: float, limit: float, **how: Any) -> bool:
@@ -83,7 +83,7 @@ class Verdict:
 
 @dataclass(frozen=True)
 class Border:
-    """How a number is held to a limit, and how to get there."""
+    """A comparison of a number with a limit, and how to reach that limit."""
 
     less: bool = False
     more: bool = False

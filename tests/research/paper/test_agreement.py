@@ -1,4 +1,4 @@
-"""When a rate of ours agrees with one of the paper, and what the reports say of it."""
+"""Agreement of our rates with the paper's, and its reports."""
 
 import pytest
 
@@ -102,7 +102,7 @@ def test_few_runs_do_not_show_that_heavy_robots_stick_more() -> None:
 
 def test_tables_go_between_their_marks_and_nowhere_else() -> None:
     page = "a\n\n<!-- one -->\n<!-- end of one -->\n\nb\n"
-    table = markdown_table(("x", "y"), [("1", r"\1")])  # what looks like a group is left alone
+    table = markdown_table(("x", "y"), [("1", r"\1")])  # text that looks like a group is unchanged
     once = splice(page, {"one": table, "two": "nowhere"})
     assert once == f"a\n\n<!-- one -->\n\n{table}\n\n<!-- end of one -->\n\nb\n"
     assert splice(once, {"one": table}) == once

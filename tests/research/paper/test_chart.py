@@ -1,4 +1,4 @@
-"""The chart of drives: what its command writes and keeps."""
+"""The chart of drives: files that its command writes and stores."""
 
 import contextlib
 import csv
@@ -18,7 +18,7 @@ from research.paper.command import STORE
 from research.paper.design import PRESET
 from research.paper.table_2 import COLUMNS
 
-# Too weak to come as far as a field: that ends soon, and the paper's table excludes it.
+# Too weak to reach a field: it ends soon, and the paper's table excludes it.
 TINY = (
     *("--torques", "0.05", "0.1", "--inertias", "0", "--frictions", "0.5"),
     *("--runs", "3", "3", "2", "1", "--threads", "1"),
@@ -32,7 +32,7 @@ def rows(path: Path) -> list[dict[str, str]]:
 
 @pytest.fixture(scope="module")
 def charted(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
-    """What the command wrote, and what it printed."""
+    """Files and output of the command."""
     folder = tmp_path_factory.mktemp("chart")
     page = folder / "page.md"
     page.write_text("Ours:\n\n<!-- drives -->\n<!-- end of drives -->\n")
@@ -61,7 +61,7 @@ def test_chart_tables_and_page_come_out(charted: tuple[Path, str]) -> None:
 def test_drives_that_remain_are_tried_more_often(
     charted: tuple[Path, str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    shutil.copy(charted[0] / STORE, tmp_path)  # the runs that both need
+    shutil.copy(charted[0] / STORE, tmp_path)  # the common runs
 
     def first_reading(rows: Sequence[DriveCell]) -> set[str]:
         return {model for _, model in TABLES["large gears"]} if rows[0].torque == 0.1 else set()

@@ -28,7 +28,7 @@ from research.paper.figures import (
 
 @pytest.fixture(scope="module")
 def work(tmp_path_factory: pytest.TempPathFactory) -> Work:
-    """Few runs, in a store: what one test has simulated another has not to."""
+    """Few runs, in a store, so that tests share simulations."""
     design = replace(QUICK, claim_repeats=1, driving_repeats=1)
     store = tmp_path_factory.mktemp("claims") / "paper.sqlite"
     return Work(store=store, design=design, threads=1, progress=False)
@@ -60,7 +60,7 @@ def test_a_third_of_theta_takes_most_of_the_swing_but_not_for_three_gears(
 ) -> None:
     swings = {(row.count, round(row.fraction, 2)): row.swing for row in shaken}
     # In step all wheels stand on two grousers at once, then on one: a chord between the corners of
-    # two tips, 6 mm thick, of seven. Looked at every 10 ms.
+    # two tips, 6 mm thick, of seven. Sampled every 10 ms.
     half = np.pi / 7.0 - np.arcsin(0.003 / 0.064)
     for count in (3, 5):
         assert swings[count, 0.0] == pytest.approx(0.064 * (1.0 - np.cos(half)), rel=0.01)
@@ -97,7 +97,7 @@ def test_five_gears_stay_on_an_edge_of_2_mm_that_three_gears_clear(work: Work) -
     assert "| 1 | gears end seizure on sharp edges |" in claims_text([claim])
 
 
-@pytest.mark.soak  # the others hold its parts
+@pytest.mark.soak  # the others contain its parts
 def test_every_claim_has_its_verdict(work: Work, shaken: list[Shaking]) -> None:
     tiny = replace(QUICK, claim_repeats=1, field_repeats=1, driving_repeats=1, computing_repeats=1)
     little = replace(work, design=tiny)

@@ -1,4 +1,4 @@
-"""The command: what it writes, what it keeps, what it says."""
+"""The command: its files, store and output."""
 
 import csv
 import re
@@ -29,7 +29,7 @@ TINY = replace(
 
 @pytest.fixture(autouse=True)
 def _tiny(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Let a quick run be a tiny one, with the two layouts that are simulated fastest."""
+    """Make a quick run tiny, with the two fastest layouts."""
     monkeypatch.setattr(command, "QUICK", TINY)
     whole = performance.ROWS
     fast = {row: whole[row] for row in (paper.CWA_ROUND, paper.LWA_ROUND)}
@@ -89,7 +89,7 @@ def test_tables_and_pictures_come_out(
     assert page_text.startswith("![](paper_table_2.png)\n\n<!-- table 2 -->\n\nCells: ")
     assert page_text.endswith("\n\n<!-- end of table 2 -->\n")
 
-    # The store has every run: what is asked again is not simulated again. Pictures take longest.
+    # The store has every run, so nothing is simulated again. Pictures take longest.
     monkeypatch.setattr(command.Pages, "draw", lambda *_, **__: None)
     assert main([*arguments[:-6], "--table", "2"]) == 0
     again = capsys.readouterr().out
@@ -106,7 +106,7 @@ def test_ctrl_c_ends_it_with_its_own_exit_code(
     monkeypatch.setattr(table_2, "cross_fields", interrupted)
     assert main(["paper", "--out", str(tmp_path)]) == 130
     assert "Traceback" not in capsys.readouterr().err
-    # What had been made before is there.
+    # Earlier results are there.
     assert "## Chosen beforehand" in (tmp_path / "paper.md").read_text(encoding="utf-8")
 
 

@@ -1,4 +1,4 @@
-"""The layouts that stand for the paper's rows, and the settings of motors and friction."""
+"""The layouts for the paper's rows, and the settings of motors and friction."""
 
 import warnings
 

@@ -1,4 +1,4 @@
-"""The joint test of the paper's table: what it leaves, and what it does not."""
+"""The joint test of the paper's table: drives that it excludes or not."""
 
 import math
 from collections.abc import Mapping
@@ -19,7 +19,7 @@ TRUE = (30.0, 0.1)
 
 
 def rates(torque: float, inertia: float) -> Mapping[tuple[str, str], float]:
-    """Make up rates that rise with torque and inertia, later from cell to cell."""
+    """Make up rates that rise with torque and inertia, later for each further cell."""
     strength = 2.0 * math.log10(torque) + math.log10(inertia)
     return {
         cell: 1.0 / (1.0 + math.exp(-2.0 * (strength - 0.5 * place)))
@@ -50,7 +50,7 @@ def judge(rng: np.random.Generator, table: Table, count: int) -> dict[tuple[floa
     }
 
 
-# Fewer come with a chance of 0.6 and 1.6 % at 95 % each, and the seed is fixed.
+# Fewer have a probability of 0.6 and 1.6 % at 95 % each, and the seed is fixed.
 @pytest.mark.parametrize(
     ("tables", "least"), [(8, 6), pytest.param(20, 17, marks=pytest.mark.soak)]
 )
@@ -73,7 +73,7 @@ def test_the_region_holds_the_true_drive_and_leaves_out_those_far_from_it(
 
 def test_a_table_that_no_drive_gives_leaves_no_region() -> None:
     rng = np.random.default_rng(7)
-    # The cells that are the hardest to clear in place of the easiest.
+    # The hardest cells instead of the easiest.
     turned = dict(zip(CELLS, reversed([20, 20, 20, 15, 10, 5, 0, 0, 0]), strict=True))
     verdicts = judge(rng, turned, 20)
     assert not any(each.is_left for each in verdicts.values())
