@@ -438,7 +438,7 @@ def _chances(cleared: int, count: int) -> NDArray[np.float64]:
     """Return the beta-binomial probability of 0 to 20 of the paper's runs, with Jeffreys' prior."""
     a, b = cleared + 0.5, count - cleared + 0.5
     chances: NDArray[np.float64] = stats.betabinom.pmf(_HITS_OF_PAPER, PAPER_RUNS, a, b)
-    chances /= chances.sum()  # 1, but for rounding
+    chances /= chances.sum()  # 1, except for rounding
     return chances
 
 

@@ -352,7 +352,7 @@ def test_wheels_rounded_to_four_decimals_stand_in_a_line(
     places = {"front": 0.31, "middle": 0.31 / 3.0 + off, "next": -0.31 / 3.0, "rear": -0.31}
     reading = read(tmp_path, urdf("".join(pair(name, x) for name, x in places.items())))
     assert isinstance(reading.robot.track, c2d.LineOfWheels) is line
-    assert any("evenly spaced but for 0.033 mm" in note for note in reading.notes) is line
+    assert any("evenly spaced within 0.033 mm" in note for note in reading.notes) is line
 
 
 def test_a_reading_survives_a_pickle() -> None:

@@ -175,7 +175,7 @@ def wheels_of(
         off = np.abs([places[:, 0] - even, places[:, 1], radii - between]).max()
         is_line = bool(off <= _EVEN)
         if is_line and off > FIT:
-            log.notes.append(f"{path}: evenly spaced but for {1e3 * off:.2g} mm, which is left out")
+            log.notes.append(f"{path}: evenly spaced within {1e3 * off:.2g} mm, which is ignored")
     angles = [base.tilt - run / pair.radius for pair in pairs]
     wheel, order = common_wheel(
         log, pairs, view, angles=angles, path=f"{path}.wheel", is_line=is_line
@@ -533,7 +533,7 @@ def _fit(own: Array, order: list[int], *, has_offset: bool) -> Phases:
     elif not has_offset:
         step += float(number @ left / (number @ number))
     step %= 1.0
-    if 1.0 - step < 1e-9:  # zero, but for rounding
+    if 1.0 - step < 1e-9:  # zero, except for rounding
         step = 0.0
     residual = float(np.abs(wrap_phase(own - offset - step * number)).max())
     return Phases(step=float(step), offset=float(offset), residual=residual, order=order)

@@ -340,7 +340,7 @@ mod tests {
         };
         assert!((drum.radius.hypot(half) - teeth.radius).abs() < 1e-12);
         assert!((front.radius - 0.0505).abs() < 1e-15);
-        // Its lower run is that of the ends, but for half of what a pin rises and falls on it.
+        // Its lower run is that of the ends, except for half of the rise of a pin on it.
         let rise = teeth.radius - drum.radius;
         let lower = 0.0505 - (drum.radius - drum.center.y);
         assert!((lower - 0.5 * rise).abs() < 1e-12, "{lower} m");

@@ -111,7 +111,7 @@ fn posture(point: &Cell) -> Posture {
     }
 }
 
-/// The poses on three contacts half way between least and greatest values, with what touches there.
+/// The poses on three contacts at the middle of the ranges, with their contacts.
 fn stands(family: &Family, shares: &Shares) -> (Setting, Vec<(Posture, Vec<usize>)>) {
     let cancel = Cancel::default();
     let setting = family

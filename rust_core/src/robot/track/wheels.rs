@@ -165,7 +165,7 @@ mod tests {
             wheel: Wheel::Round,
         };
         let found = circumferential(&outline, &wheels).expect("they fit");
-        // What is left of a quarter beyond the rear half circle is so far behind the middle.
+        // The rest of a quarter beyond the rear half circle is this far behind the middle.
         let behind = 0.5 * PI * 0.05;
         let expected = [(-0.2, -0.05), (-behind, 0.05), (0.2, 0.05), (behind, -0.05)];
         assert_eq!(found.len(), 4);

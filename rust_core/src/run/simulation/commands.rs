@@ -477,7 +477,7 @@ mod tests {
             driver.commanded(&before, &gait).speed(&gait, 9.0),
             Some(0.3)
         );
-        // Other speeds begin anew.
+        // Other speeds start from the beginning.
         let speeds = drive(&[[1.0, 0.4]], &[]);
         assert_eq!(
             driver.commanded(&before, &speeds).speed(&speeds, 3.0),
