@@ -80,8 +80,8 @@ impl<T> Turns<T> {
             }
             Err(holder) if holder == own => Ok(None),
             Err(_) => Err(Error::Internal(
-                "a thread was using this simulation when this process was forked, and left it half done here: make a \
-                 new one, or hand over a snapshot"
+                "a thread was using this simulation when this process was forked, so this copy may be incomplete: make a \
+                 new one, or start from a snapshot"
                     .to_owned(),
             )),
         }

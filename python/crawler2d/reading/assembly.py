@@ -172,7 +172,7 @@ class Assembly:
         outlines = [silhouette(shape, self.view) for _, shape in gear.bars]
         for (link, shape), (out, low) in zip(gear.bars, beyond_belt(outlines, bent), strict=True):
             if is_moved and low > 0.0:
-                rule = "must lie within the belt round the drums, but for its upper run"
+                rule = "must lie within the belt round the drums, except above its upper run"
                 value = f"a moved shape {1e3 * low:.3g} mm beyond it"
                 raise ScenarioError(shape.path, value, rule)
             if out > 0.0:

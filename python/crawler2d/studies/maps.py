@@ -175,9 +175,9 @@ def seizure_map(
 
         - `ending`: the commonest end: "cleared", the outcome, or "otherwise"; for cells that were
           not simulated (`count` is 0), that of their neighbours;
-        - `unsure`: whether it is uncertain that more than half of the runs end so: the interval of
-          their rate, or with unknowns the band over the samples, starts at one half or below; for
-          cells that were not simulated, whether a neighbour is unsure;
+        - `unsure`: whether it is uncertain that more than half of the runs end like this: the
+          interval of their rate, or with unknowns the band over the samples, starts at one half or
+          below; for cells that were not simulated, whether a neighbour is unsure;
         - `around`: for cells that were not simulated, the mean rate of their neighbours, else NaN.
 
         With unknowns, the commonest end is the one with the largest median over the samples. `plot`
@@ -254,7 +254,7 @@ def _ends(outcome: str) -> dict[str, Counts]:
 
 
 def _commonest(tallies: Sequence[Tally], ends: Sequence[Counts]) -> tuple[int, bool]:
-    """Return the commonest end of a cell, and whether most runs certainly end so."""
+    """Return the commonest end of a cell, and whether most runs certainly end like this."""
     intervals = [[tally.interval_of(each) for tally in tallies] for each in ends]
     rates = [[each.rate for each in own if not math.isnan(each.rate)] for own in intervals]
     if not rates[0]:  # no run has a result
@@ -278,7 +278,7 @@ def _with_ends(
         ending[place], unsure[place] = names[number], not grid.certain[place]
     columns: Mapping[str, Any] = {
         "ending": (dims, ending.astype(str), {"long_name": "commonest end"}),
-        "unsure": (dims, unsure, {"long_name": "not certain that more than half end so"}),
+        "unsure": (dims, unsure, {"long_name": "uncertain that more than half agree"}),
         "around": (
             dims,
             np.where(tried, np.nan, grid.rates),
