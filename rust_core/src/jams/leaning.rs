@@ -147,7 +147,10 @@ impl Both<'_> {
         let angles = match self.closest() {
             Some((at, least)) => {
                 let pieces = ranges.flat_map(|range| graded(range, at, least));
-                zeros(pieces, equation)
+                let mut angles = zeros(pieces, equation);
+                // Where both circles are one, the equation tells of two of their places only.
+                angles.push(at);
+                angles
             }
             None => zeros(ranges, equation),
         };
@@ -245,8 +248,7 @@ impl Both<'_> {
         let at = |s: f64| normal * offset + left_of(normal) * s;
         let (here, ahead) = (self.imbalance(at(0.0), turn), self.imbalance(at(1.0), turn));
         let position = at(here / (here - ahead));
-        let is_found = position.is_finite() && position.length() < 1e3 * self.setting.layout.reach;
-        is_found.then_some(Posture { position, angle })
+        Some(Posture { position, angle })
     }
 
     /// The pose near another in which both contacts touch and both forces carry the weight.
@@ -285,5 +287,128 @@ impl Both<'_> {
             posture = moved(&posture, solve(&rows, &now)?.map(|change| -change));
         }
         None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Disc;
+    use crate::jams::layout::{Grip, Layout, Outline, Surface};
+    use crate::jams::places::{Facing, Place};
+    use crate::robot::BodyKind;
+
+    /// Two discs of one radius [m], each on a point of the ground.
+    fn setting(discs: [Vector; 2], points: [Vector; 2]) -> Setting {
+        let surface = |center| Surface {
+            part: 0,
+            kind: BodyKind::Wheel,
+            lane: 0,
+            shape: Outline::Round(Disc {
+                center,
+                radius: 0.05,
+            }),
+            grip: Grip::Free,
+            friction_limit: f64::INFINITY,
+        };
+        let place = |center| Place {
+            lane: 0,
+            edge: None,
+            shape: Facing::Corner {
+                center,
+                radius: 0.0,
+                cone: [Vector::X, Vector::NEG_X],
+            },
+            friction: 0.5,
+        };
+        let layout = Layout {
+            center_of_mass: Vector::ZERO,
+            reach: 0.5,
+            surfaces: discs.map(surface).to_vec(),
+            solids: Vec::new(),
+        };
+        let (places, all) = (points.map(place).to_vec(), [-3.0, 3.0]);
+        Setting::new(layout, places, all, &Cancel::default()).expect("there are few contacts")
+    }
+
+    /// Both of its contacts of one disc on the point of its number.
+    fn both(setting: &Setting) -> Both<'_> {
+        let of = |k: usize| {
+            let is_it = |c: &&Contact| (c.surface, c.place) == (k, k);
+            *setting.contacts.iter().find(is_it).expect("it can touch")
+        };
+        let index = |k: usize| {
+            let is_it = |c: &Contact| (c.surface, c.place) == (k, k);
+            let found = setting.contacts.iter().position(is_it);
+            let mut pushes = setting.pushes(found.expect("it can touch"));
+            pushes.next().expect("it has one")
+        };
+        Both {
+            setting,
+            pair: [of(0), of(1)],
+            origin: Vector::ZERO,
+            pushes: [index(0), index(1)],
+        }
+    }
+
+    /// Off that angle by as much as it says, they are some square root of 2 times as far from being one.
+    #[test]
+    fn two_circles_are_closest_where_discs_lie_as_the_points_do() {
+        let discs = [Vector::new(0.1, 0.02), Vector::new(-0.2, -0.05)];
+        let points = [Vector::new(0.3, 0.1), Vector::new(0.05, 0.3)];
+        let setting = setting(discs, points);
+        let both = both(&setting);
+        let (at, least) = both.closest().expect("both are apart");
+        let distance = |angle: f64| {
+            let [Locus::Circle(one, _), Locus::Circle(other, _)] = both.loci(Turn::by(angle))
+            else {
+                panic!("of discs on points they are circles");
+            };
+            (one - other).length()
+        };
+        let nearest = distance(at);
+        assert!(nearest < distance(at - 1e-3) && nearest < distance(at + 1e-3));
+        assert!(at.abs() <= std::f64::consts::PI);
+        for off in [-least, least] {
+            let share = distance(at + off) / nearest;
+            assert!(share > 1.35 && share < 1.5, "{share}");
+        }
+    }
+
+    #[test]
+    fn circles_of_one_centre_or_one_point_are_closest_nowhere() {
+        let (one, other) = (Vector::new(0.1, 0.02), Vector::new(-0.2, -0.05));
+        for (discs, points) in [([one; 2], [one, other]), ([one, other], [one; 2])] {
+            let setting = setting(discs, points);
+            assert_eq!(both(&setting).closest(), None);
+        }
+    }
+
+    /// Without friction both forces go through the axles, and meet above the centre of mass by symmetry. What is off by more than a
+    /// hundredth of the reach of 0.5 m is not near.
+    #[test]
+    fn a_pose_a_little_off_is_brought_to_where_two_forces_carry_the_weight() {
+        let axles = [Vector::new(-0.2, 0.0), Vector::new(0.2, 0.0)];
+        let normals = [Vector::new(0.6, 0.8), Vector::new(-0.6, 0.8)];
+        let points = [0, 1].map(|k| axles[k] - normals[k] * 0.05);
+        let setting = setting(axles, points);
+        let both = both(&setting);
+        for (x, y, angle, is_near) in [
+            (0.0, 0.0, 0.0, true),
+            (2e-4, -1e-4, 1e-3, true),
+            (-1e-4, 2e-4, -2e-4, true),
+            (0.0, 4e-3, 0.0, true),
+            (0.0, 8e-3, 0.0, false),
+        ] {
+            let position = Vector::new(x, y);
+            let found = both.polished(Posture { position, angle });
+            assert_eq!(found.is_some(), is_near, "{x} {y} {angle}");
+            if let Some(Posture { position, angle }) = found {
+                assert!(
+                    position.length() < 1e-9 && angle.abs() < 1e-9,
+                    "{position} {angle}"
+                );
+            }
+        }
     }
 }

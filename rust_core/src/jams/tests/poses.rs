@@ -366,3 +366,32 @@ fn poses_a_tenth_of_a_micrometre_apart_are_the_same() {
         }
     }
 }
+
+/// Wheels of one size on points as far apart as their axles: at one angle both circles are one, and both forces are vertical.
+#[test]
+fn the_pose_of_two_wheels_whose_circles_are_one_is_found() {
+    let mut draw = Draw(7);
+    for case in 0..40 {
+        let at = posture(&mut draw);
+        let friction = draw.between(0.1, 0.9);
+        let up = Vector::new(-friction, 1.0).normalize();
+        let radius = draw.between(0.02, 0.1);
+        let axles = [Vector::new(-0.2, 0.01), Vector::new(0.15, -0.03)];
+        let pieces = axles.map(|center| {
+            let disc = Disc { center, radius };
+            let point = at.position + Turn::by(at.angle).apply(center) - up * radius;
+            let cone = [-0.8, 0.8].map(|angle| Vector::from_angle(angle).rotate(up));
+            let facing = Facing::Corner {
+                center: point,
+                radius: 0.0,
+                cone,
+            };
+            (Outline::Round(disc), facing, point)
+        });
+        let grips = ([Grip::Driven(1.0); 2], [friction; 2]);
+        assert!(
+            is_found(&pieces, grips, Vector::new(0.0, 0.05), &at),
+            "case {case}: {at:?}"
+        );
+    }
+}
