@@ -185,3 +185,74 @@ fn determinant(a: Row, b: Row, c: Row) -> Interval {
         + a[1] * (b[2] * c[0] - b[0] * c[2])
         + a[2] * (b[0] * c[1] - b[1] * c[0])
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::jams::certify::family::Spot;
+    use crate::jams::certify::tests::family_on_a_step;
+    use crate::jams::certify::touch::Normals;
+    use crate::jams::layout::Surface;
+
+    /// The belly, nose up by 0.3 rad, on the rounded edge of the step, at any place along it; and the edge's place.
+    fn on_the_edge(family: &Family, along: f64, half: f64) -> (Cell, (usize, usize)) {
+        let is_below = |surface: &Surface| match surface.shape {
+            Outline::Flat { outward, .. } => outward.y < -0.5,
+            Outline::Round(_) => false,
+        };
+        let surfaces = &family.layout.surfaces;
+        let surface = surfaces.iter().position(is_below).expect("it has a belly");
+        let is_corner = |spot: &Spot| matches!(spot.place.shape, Facing::Corner { .. });
+        let place = family
+            .places
+            .iter()
+            .position(is_corner)
+            .expect("a step has an edge");
+        let Outline::Flat { ends, outward } = surfaces[surface].shape else {
+            panic!("it is one");
+        };
+        let Facing::Corner { center, radius, .. } = family.places[place].place.shape else {
+            panic!("it is one");
+        };
+        let here = ends[0] + (ends[1] - ends[0]).normalize() * along + outward * radius;
+        let position = center - Vector::from_angle(0.3).rotate(here);
+        let mut cell = Cell::ZERO;
+        cell.low[..3].copy_from_slice(&[position.x - half, position.y - half, 0.3]);
+        cell.high[..3].copy_from_slice(&[position.x + half, position.y + half, 0.3]);
+        (cell, (surface, place))
+    }
+
+    /// The belly is 0.365 m long. Whether wheels are in the way does not matter here.
+    #[test]
+    fn a_run_is_on_an_edge_if_it_is_there_between_its_ends_all_over_a_cell() {
+        let family = family_on_a_step();
+        let (_, (surface, place)) = on_the_edge(&family, 0.1, 0.0);
+        let touch = Touch {
+            surface,
+            place,
+            normals: Normals {
+                bisector: Vector::from_angle(0.3).rotate(Vector::Y),
+                sines: [0.0; 2],
+                circle: None,
+                is_on_face: false,
+            },
+            slopes: [0.0; 2],
+            arm: Rectangle::at(Vector::ZERO),
+            radius: 0.0,
+            slides: false,
+        };
+        for (along, half, is_there) in [
+            (1e-3, 0.0, true),
+            (0.2, 0.0, true),
+            (0.364, 0.0, true),
+            (-1e-3, 0.0, false),
+            (0.366, 0.0, false),
+            (0.36, 1e-3, true),
+            (0.36, 0.01, false),
+            (0.005, 0.01, false),
+        ] {
+            let (cell, _) = on_the_edge(&family, along, half);
+            assert_eq!(family.is_real(&cell, &touch), is_there, "{along} {half}");
+        }
+    }
+}

@@ -72,7 +72,7 @@ impl Spot {
                         (axle - from).along(direction).is_above(0.0)
                             && (to - axle).along(direction).is_above(0.0)
                     };
-                    let is_over = normal.y > 0.0 && is_between(along) && is_between(Vector::X);
+                    let is_over = is_between(along) && is_between(Vector::X);
                     is_over || gap.is_above(-depth)
                 };
                 if track.discs.iter().all(is_off) {
@@ -129,10 +129,10 @@ mod tests {
     use crate::draw::Draw;
     use crate::geometry::Envelope;
 
-    /// Two wheels of 0.1 m, 0.6 m apart.
-    fn track() -> Track {
+    /// Two wheels of 0.1 m, 0.6 m apart, with their middle there.
+    fn wheels(middle: Vector) -> Track {
         let discs = [-0.3, 0.3].map(|x| Disc {
-            center: Vector::new(x, 0.0),
+            center: middle + Vector::new(x, 0.0),
             radius: 0.1,
         });
         let belt = Envelope::new(&discs);
@@ -144,7 +144,7 @@ mod tests {
 
     #[test]
     fn no_point_of_a_segment_is_deeper_than_its_deeper_end_beyond_the_nearest_disc() {
-        let (track, mut draw) = (track(), Draw(20_270_602));
+        let (track, mut draw) = (wheels(Vector::ZERO), Draw(20_270_602));
         let mut inside = 0;
         for _ in 0..500 {
             let [a, b] =
@@ -170,11 +170,14 @@ mod tests {
                 // It continues away from the wheel, along a line from its centre.
                 ([0.35, 0.0], [0.45, 0.0], 0.05),
             ] {
-                let ends = [a, b].map(|[x, y]| Vector::new(side * x, y));
-                let found = track.depth_beyond_a_disc(ends);
-                assert!((found - depth).abs() < 1e-12, "{ends:?}: {found} m");
-                let [b, a] = ends;
-                assert!((track.depth_beyond_a_disc([a, b]) - depth).abs() < 1e-12);
+                for middle in [Vector::ZERO, Vector::new(0.2, -0.7)] {
+                    let track = wheels(middle);
+                    let ends = [a, b].map(|[x, y]| middle + Vector::new(side * x, y));
+                    let found = track.depth_beyond_a_disc(ends);
+                    assert!((found - depth).abs() < 1e-12, "{ends:?}: {found} m");
+                    let [b, a] = ends;
+                    assert!((track.depth_beyond_a_disc([a, b]) - depth).abs() < 1e-12);
+                }
             }
         }
     }

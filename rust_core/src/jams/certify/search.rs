@@ -38,9 +38,7 @@ impl Family {
         let mut excluded = Vec::new();
         let mut open = vec![(root, down)];
         while let Some((cell, near)) = open.pop() {
-            if excluded.len() % 1024 == 0 {
-                cancel.check()?;
-            }
+            cancel.check()?;
             match self.judge(&cell, near, depth) {
                 Verdict::Excluded(exclusion, twist) => excluded.push(ExcludedCell {
                     low: cell.low,

@@ -4,6 +4,7 @@ mod enclosures;
 mod family;
 mod held;
 mod inside;
+mod search;
 mod touches;
 
 use super::cell::{Affine, Cell, MOST_PARAMETERS, NUMBERS, Shares, Turns};

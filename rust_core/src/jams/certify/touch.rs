@@ -1,5 +1,7 @@
 //! Possible contacts in a cell, and their forces.
 
+use std::f64::consts::FRAC_PI_2;
+
 use super::cell::{Cell, Turns};
 use super::family::{Family, Spot};
 use super::interval::{Interval, MARGIN, Rectangle};
@@ -172,11 +174,10 @@ impl Family {
             let from = axle - ends[0];
             match spot.place.shape {
                 Facing::Face { normal, .. } => {
-                    let is_under = normal.y > 0.0 && {
-                        let after = (axle.x() - ends[0].x()).low > MARGIN;
-                        let before = (ends[1].x() - axle.x()).low > MARGIN;
-                        after && before && from.along(normal).is_below(0.0)
-                    };
+                    // Of a face that looks up, the end on the right is the second.
+                    let after = (axle.x() - ends[0].x()).low > MARGIN;
+                    let before = (ends[1].x() - axle.x()).low > MARGIN;
+                    let is_under = after && before && from.along(normal).is_below(0.0);
                     let along = right_of(normal);
                     let beside = from.along(along).low > MARGIN
                         && (ends[1] - axle).along(along).low > MARGIN;
@@ -262,11 +263,7 @@ impl Spot {
         let gap = outward.dot(corner - run[0]) - radius;
         let slack = off + MARGIN;
         let is_possible = gap.abs() <= slack && here >= -slack && here <= length + slack;
-        let most = if turns.half < 1.5 {
-            libm::sin(turns.half) + MARGIN
-        } else {
-            1.0
-        };
+        let most = (libm::sin(turns.half.min(FRAC_PI_2)) + MARGIN).min(1.0);
         let normals = Normals {
             bisector: -turns.middle(outward),
             sines: [-most, most],
@@ -274,5 +271,86 @@ impl Spot {
             is_on_face: false,
         };
         is_possible.then_some((normals, radius))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::jams::certify::tests::family_on_a_step;
+
+    /// A run from (-0.05, -0.22) m that goes 0.25 m down at a slope of 3 to 4, and a round of 10 mm that it may lie on.
+    const RUN: ([Vector; 2], Vector) = (
+        [Vector::new(-0.05, -0.22), Vector::new(0.15, -0.37)],
+        Vector::new(-0.6, -0.8),
+    );
+    const ROUND: f64 = 0.01;
+
+    /// A range of angles about 0.3 rad, with the chassis frame at one place.
+    fn cell(half: f64) -> Cell {
+        let mut cell = Cell::ZERO;
+        cell.low[..3].copy_from_slice(&[0.7, 0.4, 0.3 - half]);
+        cell.high[..3].copy_from_slice(&[0.7, 0.4, 0.3 + half]);
+        cell
+    }
+
+    /// What a run sees of a corner so far along it and off it [m], in the middle of a cell.
+    fn seen(cell: &Cell, along: f64, gap: f64) -> Option<(Normals, f64)> {
+        let family = family_on_a_step();
+        let is_corner = |spot: &&Spot| matches!(spot.place.shape, Facing::Corner { .. });
+        let found = family.places.iter().find(is_corner);
+        let mut spot = found.expect("a step has one").clone();
+        if let Facing::Corner { radius, .. } = &mut spot.place.shape {
+            *radius = ROUND;
+        }
+        let ([from, to], outward) = RUN;
+        let corner = from + (to - from).normalize() * along + outward * (gap + ROUND);
+        let turns = Turns::of(cell);
+        let center = Rectangle::at(cell.position().middle + turns.middle(corner));
+        spot.seen_across(&[center; 2], cell.position(), &turns, RUN)
+    }
+
+    #[test]
+    fn a_run_lies_on_a_round_that_touches_it_between_its_ends() {
+        let one = cell(0.0);
+        for along in [0.0, 0.1, 0.25] {
+            let (normals, radius) = seen(&one, along, 0.0).expect("it touches");
+            // The normal of the ground is against that of the run.
+            let expected = -Vector::from_angle(0.3).rotate(RUN.1);
+            assert!((normals.bisector - expected).length() < 1e-15);
+            let [right, left] = normals.sines;
+            assert!(right <= 0.0 && left >= 0.0 && left - right < 3.0 * MARGIN);
+            assert!((radius - ROUND).abs() < 1e-15);
+            assert!(seen(&one, along, 1e-6).is_none() && seen(&one, along, -1e-6).is_none());
+        }
+        assert!(seen(&one, -1e-6, 0.0).is_none() && seen(&one, 0.25 + 1e-6, 0.0).is_none());
+    }
+
+    /// Turned by 0.02 rad, the corner, some 0.3 m from the chassis frame, moves by some 6 mm over the run.
+    #[test]
+    fn in_a_range_of_angles_a_run_lies_on_rounds_as_far_off_as_it_turns() {
+        let range = cell(0.02);
+        for (along, gap, is_seen) in [
+            (0.1, 5e-3, true),
+            (0.1, -5e-3, true),
+            (0.1, 8e-3, false),
+            (0.1, -8e-3, false),
+            (-4e-3, 0.0, true),
+            (-6e-3, 0.0, false),
+            (0.257, 0.0, true),
+            (0.26, 0.0, false),
+        ] {
+            let found = seen(&range, along, gap);
+            assert_eq!(found.is_some(), is_seen, "{along} m along, {gap} m off");
+            if let Some((normals, _)) = found {
+                let [right, left] = normals.sines.map(libm::asin);
+                assert!((left - 0.02).abs() < 1e-8 && (right + 0.02).abs() < 1e-8);
+            }
+        }
+        // All angles within more than a quarter of a turn: the normal may be any.
+        for half in [1.6, 3.0] {
+            let found = seen(&cell(half), 0.1, 0.0);
+            assert_eq!(found.map(|(normals, _)| normals.sines), Some([-1.0, 1.0]));
+        }
     }
 }

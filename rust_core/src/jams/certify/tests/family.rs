@@ -166,6 +166,28 @@ fn parameters_that_do_nothing_or_something_else_or_not_in_proportion_are_refused
     assert_eq!(refused(|all| all[2].robot.belly = None), friction);
 }
 
+/// Here the first parameter raises the centre of mass, which lies over the middle of the robot.
+#[test]
+fn a_parameter_may_move_the_centre_of_mass_in_proportion_alone() {
+    let moved = |heights: [f64; 5]| {
+        let mut all = members();
+        for (member, height) in all.iter_mut().zip(heights) {
+            member.robot.center_of_mass = [0.0, height];
+            if let Terrain::Step { height, .. } = &mut member.terrain {
+                *height = HEIGHTS[0];
+            }
+        }
+        family(&all).map(|family| family.center_of_mass)
+    };
+    let [low, high, middle] = [0.01, 0.05, 0.03];
+    let found = moved([low, high, low, high, middle]).expect("it is in proportion");
+    let at = |share: f64| found.at(&[share, 0.0, 0.0, 0.0]);
+    assert!((at(1.0) - at(0.0) - Vector::new(0.0, high - low)).length() < 1e-12);
+    assert!(moved([low, high, low, high, 0.04]).is_err());
+    assert!(moved([low, high, low, middle, middle]).is_err());
+    assert!(moved([low; 5]).is_err());
+}
+
 /// Wheels in a row jam at some heights and not at others, so the ranges are divided as far as allowed.
 #[test]
 fn no_region_is_smaller_than_asked_for_and_together_they_are_all() {

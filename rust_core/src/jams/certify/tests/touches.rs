@@ -115,3 +115,36 @@ fn where_all_of_a_cell_overlaps_no_pose_of_it_is_clear() {
     }
     assert!(overlaps > 500 && clear > 200);
 }
+
+/// A wheel whose axle is over the middle of a face, and one that may be over its end.
+#[test]
+fn a_wheel_is_wholly_on_a_face_if_it_is_over_it_all_over_a_cell() {
+    let family = family_on_a_step();
+    let radius = family
+        .discs
+        .iter()
+        .map(|disc| disc.radius)
+        .fold(0.0, f64::max);
+    let of = |x: f64, half: f64| {
+        let mut cell = Cell::ZERO;
+        cell.low[..2].copy_from_slice(&[x - half, radius]);
+        cell.high[..2].copy_from_slice(&[x + half, radius]);
+        let Possible::Touches(touches) = family.possible(&cell) else {
+            panic!("it stands there");
+        };
+        let on_faces = touches.iter().map(|touch| touch.normals.is_on_face);
+        on_faces.collect::<Vec<bool>>()
+    };
+    assert_eq!(of(-1.0, 0.0), [true; 4]);
+    assert_eq!(of(-1.0, 0.1), [true; 4]);
+    // The ground ends under the axle of the rear wheel.
+    let end = family.root().low[0] - family.reach;
+    let rear = family
+        .discs
+        .iter()
+        .map(|disc| disc.center.x)
+        .fold(0.0, f64::min);
+    let mut beyond = of(end - rear, 0.01);
+    beyond.sort_unstable();
+    assert_eq!(beyond, [false, true, true, true]);
+}
