@@ -180,6 +180,7 @@ impl MotorRule {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scenario::Scenario;
 
     impl Line {
         fn at(self, speed: f64) -> f64 {
@@ -200,6 +201,27 @@ mod tests {
             correction: None,
             self_locking: false,
         }
+    }
+
+    /// Without torque there is no share of it at any speed.
+    #[test]
+    fn a_curve_of_torques_is_one_of_shares_of_the_largest() {
+        let text = include_str!("../../../tests/scenarios/engineer_belt_step.json");
+        let mut robot = Scenario::from_json(text)
+            .expect("the shared scenario is valid")
+            .robot;
+        let mut curve = |most: f64, torques: Option<[[f64; 2]; 3]>| {
+            robot.drivetrain.max_torque = most;
+            robot.drivetrain.no_load_speed = torques.is_none().then_some(0.75);
+            robot.drivetrain.torque_curve = torques.map(|curve| curve.to_vec());
+            MotorRule::of(&robot.drivetrain, &robot.outline).curve
+        };
+        let falls = [[0.0, 8.0], [0.25, 2.0], [0.5, 0.0]];
+        let shares = [[0.0, 1.0], [0.25, 0.25], [0.5, 0.0]];
+        assert_eq!(curve(8.0, Some(falls)), shares);
+        let none = falls.map(|[speed, _]| [speed, 0.0]);
+        assert_eq!(curve(0.0, Some(none)), none);
+        assert_eq!(curve(8.0, None), [[0.0, 1.0], [0.75, 0.0]]);
     }
 
     #[test]

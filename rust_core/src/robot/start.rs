@@ -150,3 +150,90 @@ fn closed(corners: &[Vector]) -> impl Iterator<Item = [Vector; 2]> {
     let n = corners.len();
     (0..n).map(move |i| [corners[i], corners[(i + 1) % n]])
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::robot::BodyKind;
+    use crate::scenario::{Surface, Terrain};
+
+    /// Its discs are listed so that those at the ends of the lower run are no neighbours. Over a spike in the middle it stands as
+    /// high as that, less how deep the run lies.
+    #[test]
+    fn a_hull_starts_on_a_spike_under_a_run_between_any_two_of_its_discs() {
+        let disc = |x: f64, y: f64| Disc {
+            center: Vector::new(x, y),
+            radius: 0.05,
+        };
+        let hull = Shape::Hull {
+            discs: vec![disc(-0.3, 0.0), disc(0.0, 0.3), disc(0.3, 0.0)],
+            grouser_height: 0.0,
+        };
+        let part = Part::new(BodyKind::Guide, hull, None);
+        let points = [
+            [-1.0, 0.0],
+            [-0.02, 0.0],
+            [0.0, 0.2],
+            [0.02, 0.0],
+            [1.0, 0.0],
+        ];
+        let spike = Profile::new("terrain", &points, Surface::sharp(0.5), true).expect("a spike");
+        let mut touching = Touching::default();
+        touching.add(&part, 0.0, |p| p);
+        touching.add_runs(&part, |p| p);
+        let height = touching.lowest_height(&spike, 0.0);
+        assert!((height - 0.25).abs() < 1e-12, "{height} m");
+    }
+
+    /// The Engineer on a belt, turned, on a ground from one x to another [m] with an edge at 0.
+    fn start(angle: f64, [low, high]: [f64; 2]) -> (Scenario, Result<Vector, ScenarioError>) {
+        let text = include_str!("../../../tests/scenarios/engineer_belt_step.json");
+        let mut scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+        scenario.start.angle = angle;
+        scenario.start.approach = 0.1;
+        scenario.terrain = Terrain::Points {
+            points: vec![[low, 0.0], [0.0, 0.0], [high, 0.01]],
+            goal: 0.0,
+            surface: Surface::sharp(0.5),
+            segment_friction: None,
+        };
+        let ground = Ground::new(&scenario.terrain, scenario.robot.gauge).expect("a ground");
+        let model = Model::on(&scenario.robot, &ground).expect("it can be built");
+        let found = start_position(&scenario, &model, &ground);
+        (scenario, found)
+    }
+
+    /// [m] How far a robot turned by an angle reaches behind its frame and before it.
+    fn ends(scenario: &Scenario, angle: f64) -> [f64; 2] {
+        let discs = outline_discs(&scenario.robot.outline);
+        let reach = |sign: f64| {
+            let of = |disc: &Disc| sign * turned_by(angle)(disc.center).x + disc.radius;
+            discs.iter().map(of).fold(f64::NEG_INFINITY, f64::max)
+        };
+        [reach(-1.0), reach(1.0)]
+    }
+
+    #[test]
+    fn a_robot_starts_with_its_front_so_far_before_the_first_edge() {
+        for angle in [-0.4, 0.0, 0.7] {
+            let (scenario, found) = start(angle, [-3.0, 3.0]);
+            let [_, front] = ends(&scenario, angle);
+            let x = found.expect("there is room").x;
+            assert!((x + front + 0.1).abs() < 1e-12, "{angle} rad: {x} m");
+        }
+    }
+
+    #[test]
+    fn a_ground_that_ends_under_the_robot_is_refused_with_what_it_must_reach_under() {
+        let (scenario, _) = start(0.0, [-3.0, 3.0]);
+        let [rear, front] = ends(&scenario, 0.0);
+        let length = rear + front;
+        assert!(start(0.0, [-0.1 - length - 1e-9, 3.0]).1.is_ok());
+        let (_, found) = start(0.0, [-0.1 - length + 1e-4, 3.0]);
+        let error = found.expect_err("its rear is beyond the end");
+        let ([from, to], low) = ([-0.1 - length, -0.1], -0.1 - length + 1e-4);
+        let rule = format!("from x = {from:.4} m to {to:.4} m");
+        assert!(error.rule.ends_with(&rule), "{}", error.rule);
+        assert_eq!(error.value, format!("x from {low} to 3 m"));
+    }
+}

@@ -144,3 +144,71 @@ fn stays(mut robot: Simulation, jam: &Jam, cancel: &Cancel) -> Result<bool, Erro
     }
     Ok(true)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Vector;
+    use crate::scenario::{ForceSupport, ForceTrack, Scenario, Surface, Terrain, Track};
+
+    /// The Engineer without motor force on skids of some friction, on ground that rises by a tenth.
+    fn skids(friction: f64, rises: bool) -> (Simulation, Jam) {
+        let text = include_str!("../../../tests/scenarios/engineer_belt_step.json");
+        let mut scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+        scenario.robot.track = Track::Force(ForceTrack {
+            support: ForceSupport::Skids,
+            skid_friction: friction,
+            wheel_count: 5,
+        });
+        scenario.robot.drivetrain.max_torque = 0.0;
+        let slope = if rises { 0.1 } else { 0.0 };
+        scenario.start.angle = libm::atan(slope);
+        scenario.terrain = Terrain::Points {
+            points: vec![[-3.0, -3.0 * slope], [3.0, 3.0 * slope]],
+            goal: 2.0,
+            surface: Surface::sharp(0.9),
+            segment_friction: None,
+        };
+        let robot = Simulation::new(&ValidScenario::new(&scenario).expect("it is valid"));
+        let start = robot.reading();
+        let jam = Jam {
+            position: start.position,
+            angle: start.chassis_angle,
+            contacts: Vec::new(),
+        };
+        (robot, jam)
+    }
+
+    /// Of a slope of 0.1, a friction of 0.1 and half a hundredth more bears no push of a hundredth of the weight backwards.
+    #[test]
+    fn a_robot_stays_unless_a_hundredth_of_its_weight_moves_it_either_way() {
+        for (friction, rises, expected) in [
+            (0.005, false, false),
+            (0.02, false, true),
+            (0.105, true, false),
+            (0.12, true, true),
+        ] {
+            let (robot, jam) = skids(friction, rises);
+            let found = stays(robot, &jam, &Cancel::default()).expect("it stays finite");
+            assert_eq!(found, expected, "{friction} {rises}");
+        }
+    }
+
+    /// A millimetre, and a hundredth of a radian.
+    #[test]
+    fn a_robot_that_is_not_where_it_is_to_stay_does_not_stay() {
+        for (off, turned, expected) in [
+            (Vector::new(0.8e-3, 0.0), 0.0, true),
+            (Vector::new(0.9e-3, 0.9e-3), 0.0, false),
+            (Vector::ZERO, 0.009, true),
+            (Vector::ZERO, 0.011, false),
+            (Vector::ZERO, -0.011, false),
+        ] {
+            let (robot, mut jam) = skids(0.3, false);
+            jam.position += off;
+            jam.angle += turned;
+            let found = stays(robot, &jam, &Cancel::default()).expect("it stays finite");
+            assert_eq!(found, expected, "{off} {turned}");
+        }
+    }
+}

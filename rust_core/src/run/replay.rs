@@ -85,3 +85,52 @@ impl Log {
         recording.finish(&simulation, cancel)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Drives on for 0.05 s, is told to go back, and is interrupted half way through 0.1 s more; notes all of that.
+    fn drive(simulation: &mut Simulation, log: &mut Log) {
+        let back = ByHand {
+            speed: Some(-0.2),
+            flippers: [None, None],
+            push: None,
+        };
+        for (time, share, commands) in [(0.05, 1.0, Some(back)), (0.1, 0.5, None)] {
+            let begin = simulation.time();
+            log.note_steps(begin + time);
+            while simulation.time() < begin + share * time {
+                let end = simulation.step_until(begin + time);
+                end.expect("the state stays finite");
+            }
+            log.has_reached(simulation.time());
+            if let Some(commands) = commands {
+                log.note_commands(commands);
+                simulation
+                    .command_all(&commands)
+                    .expect("they are within limits");
+            }
+        }
+    }
+
+    #[test]
+    fn a_run_that_is_made_again_ends_where_it_was_interrupted_with_the_same_bits() {
+        let text = include_str!("../../../tests/scenarios/engineer_belt_step.json");
+        let scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+        let checked = ValidScenario::new(&scenario).expect("it is valid");
+        let mut simulation = Simulation::new(&checked);
+        let mut log = Log::default();
+        for _ in 0..2 {
+            drive(&mut simulation, &mut log);
+            let again = log.replay(&scenario, Record::summary(), &Cancel::default());
+            let found = again.expect("the state stays finite").metrics;
+            let now = simulation.reading();
+            assert_eq!(found.time.to_bits(), simulation.time().to_bits());
+            assert_eq!(found.final_x.to_bits(), now.position.x.to_bits());
+            assert_eq!(found.final_angle.to_bits(), now.chassis_angle.to_bits());
+            // And it goes on from a snapshot.
+            log = Log::after(simulation.snapshot().expect("its engine is our own"));
+        }
+    }
+}

@@ -279,6 +279,29 @@ impl World {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scenario::Terrain;
+
+    /// Both stand 0.2 m before a step of 8 cm, each with as many distances as are asked for.
+    #[test]
+    fn heights_are_those_of_the_ground_so_far_from_each_robot() {
+        let text = include_str!("../../../tests/scenarios/engineer_belt_step.json");
+        let scenario = ValidScenario::from_json(text).expect("the shared scenario is valid");
+        let worlds = Worlds::new(vec![scenario.clone(); 2], &Cancel::default());
+        let worlds = worlds.expect("there is room");
+        let Terrain::Step { height, .. } = scenario.scenario().terrain else {
+            panic!("it is a step");
+        };
+        let x = worlds.states()[0].reading.position.x;
+        let before = -x;
+        assert!(before > 0.1, "{before} m");
+        let offsets = [-0.5, 0.0, before - 0.02, before + 0.02, before + 1.0];
+        let row = [0.0, 0.0, 0.0, height, height];
+        let found = worlds.heights(&offsets).expect("there is room");
+        assert_eq!(found.len(), 2 * row.len());
+        for (found, expected) in found.iter().zip(row.iter().cycle()) {
+            assert!((found - expected).abs() < 1e-12, "{found} m");
+        }
+    }
 
     #[test]
     fn one_that_cannot_go_on_stands_still_until_it_is_reset_and_the_others_go_on() {

@@ -346,3 +346,48 @@ object! {
         phase_fraction: f64 = number(Range::between(0.0, 1.0, "")),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenario::Scenario;
+
+    #[test]
+    fn a_track_has_grousers_if_its_surface_has_and_none_once_they_are_covered() {
+        let of = |text: &str| {
+            let scenario = Scenario::from_json(text);
+            scenario.expect("the shared scenario is valid").robot.track
+        };
+        for (text, has_grousers) in [
+            (
+                include_str!("../../../tests/scenarios/engineer_belt_step.json"),
+                false,
+            ),
+            (
+                include_str!("../../../tests/scenarios/engineer_grouser_belt_step.json"),
+                true,
+            ),
+            (
+                include_str!("../../../tests/scenarios/engineer_chain_step.json"),
+                true,
+            ),
+            (
+                include_str!("../../../tests/scenarios/engineer_gear3_step.json"),
+                true,
+            ),
+            (
+                include_str!("../../../tests/scenarios/engineer_force_step.json"),
+                false,
+            ),
+        ] {
+            let open = of(text);
+            assert_eq!(open.has_grousers(), has_grousers, "{open:?}");
+            let closed = |surface| {
+                let of = Box::new(open.clone());
+                Track::Closed(ClosedTrack { of, surface }).has_grousers()
+            };
+            assert_eq!(closed(ClosedSurface::Own), has_grousers);
+            assert!(!closed(ClosedSurface::Smooth));
+        }
+    }
+}

@@ -1,4 +1,4 @@
-//! Arms computed by hand, and tracks on separate lanes.
+//! Arms computed by hand, tracks on separate lanes, and tips of grousers.
 
 use super::*;
 
@@ -42,4 +42,27 @@ fn arms_at_an_end_are_one_rod_about_the_axle_there() {
             assert_relative_eq!(arm.start_angle, 0.4);
         }
     }
+}
+
+/// Round a wheel the tip of a grouser is faster than the belt that carries it, as it is farther from the axle; along itself a
+/// surface has no tips.
+#[test]
+fn tips_of_grousers_are_faster_than_their_belt_by_the_ratio_of_their_radii() {
+    let mut fastest = Vec::new();
+    for robot in on_all_tracks() {
+        let closed = model(&closed(&robot, ClosedSurface::Own));
+        let driven = closed.parts.iter().filter(|part| part.drive.is_some());
+        let ratios =
+            driven.flat_map(|part| part.discs().map(|(tip, root)| tip.radius / root.radius));
+        let ratio = ratios.fold(0.0, f64::max);
+        let expected = if ratio > 1.0 { ratio } else { 0.0 };
+        assert_relative_eq!(closed.tip_speed(), expected);
+        fastest.push(expected);
+    }
+    assert!(fastest.contains(&0.0) && fastest.iter().any(|speed| *speed > 1.1));
+    let gears = scenario(include_str!(
+        "../../../../tests/scenarios/engineer_gear3_step.json"
+    ));
+    // Its surface is where its tips are.
+    assert_relative_eq!(model(&gears.robot).tip_speed(), 1.0);
 }

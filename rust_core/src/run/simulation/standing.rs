@@ -49,3 +49,68 @@ impl Simulation {
         self
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::left_of;
+    use crate::jams::JamContact;
+    use crate::limits::Cancel;
+    use crate::run::find_jams;
+    use crate::scenario::{LineOfWheels, Scenario, Surface, Terrain, Track, Wheel};
+
+    /// The Engineer on four round wheels before a step, in which it can jam.
+    fn wheels() -> ValidScenario {
+        let text = include_str!("../../../../tests/scenarios/engineer_belt_step.json");
+        let mut scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+        scenario.robot.track = Track::Line(LineOfWheels {
+            count: 4,
+            wheel_radius: None,
+            wheel: Wheel::Round,
+            as_track: true,
+        });
+        scenario.terrain = Terrain::Step {
+            height: 0.08,
+            surface: Surface::sharp(0.9),
+        };
+        ValidScenario::new(&scenario).expect("it is valid")
+    }
+
+    #[test]
+    fn a_robot_that_is_put_somewhere_is_there_and_drives_at_the_command() {
+        let checked = wheels();
+        let robot = Simulation::driven_at(&checked, Vector::new(-1.0, 0.3), 0.2);
+        let now = robot.reading();
+        assert!((now.position - Vector::new(-1.0, 0.3)).length() < 1e-15);
+        assert!((now.chassis_angle - 0.2).abs() < 1e-15);
+        let speed = checked.scenario().drive.speed;
+        assert!((now.track_speed - speed).abs() < 1e-15 && speed > 0.1);
+    }
+
+    /// Where a contact carries a share of the weight it gives way by that share of g over the square of its rate. It cannot be
+    /// less deep in any, and moves no farther than that takes, so in one it is no deeper.
+    #[test]
+    fn a_robot_is_pressed_onto_its_contacts_until_each_is_as_deep_as_it_carries() {
+        let checked = wheels();
+        let jams = find_jams(&checked, &Cancel::default()).expect("there are few contacts");
+        let rate = TAU * checked.scenario().solver.contact_frequency;
+        let deepest = checked.scenario().gravity / (rate * rate);
+        let mut tried = 0;
+        for jam in jams.iter().map(|found| &found.jam) {
+            let touching = Simulation::driven_at(&checked, jam.position, jam.angle);
+            let before = touching.state.clone();
+            let after = touching.pressed(jam).state;
+            let (moved, turned) = (after.center - before.center, after.angle - before.angle);
+            let spare = |contact: &JamContact| {
+                let lever = left_of(contact.point - before.center);
+                let depth = -contact.normal.dot(moved + lever * turned);
+                depth - deepest * contact.load
+            };
+            let least = jam.contacts.iter().map(spare).fold(f64::INFINITY, f64::min);
+            // It is known to 1e-11 m; the depths are some 2e-7 m.
+            assert!(least.abs() < 1e-4 * deepest, "{least} m, {jam:?}");
+            tried += 1;
+        }
+        assert!(tried > 2, "{tried}");
+    }
+}

@@ -66,3 +66,40 @@ fn numbers_and_long_values_are_shown_in_few_characters() {
     assert_eq!(joined("", "speed"), "speed");
     assert_eq!(joined("drive", "speed"), "drive.speed");
 }
+
+/// One that is read has its meaning, however like it its name may be.
+#[test]
+fn an_error_of_a_missing_field_names_one_that_is_like_it_and_has_no_other_meaning() {
+    let value =
+        serde_json::json!({"frictions_new": 1.0, "frition": 2.0, "friktion": 3.0, "mass": 4.0});
+    let mut fields = Fields::new("robot", &value).expect("it is an object");
+    let mut rule = |read: &[&'static str]| {
+        for name in read {
+            fields.value(name).expect("it is there");
+        }
+        let error = fields.value("friction").expect_err("it is not there");
+        assert_eq!(
+            (error.path.as_str(), error.value.as_str()),
+            ("robot.friction", "nothing")
+        );
+        error.rule
+    };
+    assert_eq!(
+        rule(&[]),
+        "must be given (is friktion a misspelling of it?)"
+    );
+    assert_eq!(
+        rule(&["friktion"]),
+        "must be given (is frition a misspelling of it?)"
+    );
+    assert_eq!(rule(&["frition"]), "must be given");
+}
+
+/// Half as long again, with as many letters more as may differ.
+#[test]
+fn a_longer_name_may_be_a_misspelling_too() {
+    let value = serde_json::json!({"friction_new": 1.0});
+    let mut fields = Fields::new("", &value).expect("it is an object");
+    let error = fields.value("friction").expect_err("it is not there");
+    assert!(error.rule.contains("friction_new"), "{}", error.rule);
+}
