@@ -102,7 +102,8 @@ fn every_stop_at_rest_is_one_of_the_jams_that_are_computed() {
         assert!(nearest < 1e-4, "case {case}: {stop:?} is {nearest} off");
     }
     println!("{stops} stops, at most {most:e} m or rad off");
-    assert!(stops >= few_or_many(40, 1_500));
+    // About three of ten robots come to rest.
+    assert!(stops >= few_or_many(40, 1_300));
 }
 
 /// And nearly all on three contacts stay, none on one does.
