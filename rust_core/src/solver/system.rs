@@ -251,3 +251,29 @@ fn eliminate<const COUNT: usize>(
     }
     Some(known)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The solution of a system of three unknowns with these rows and right-hand sides.
+    fn solution(rows: [[f64; 3]; 3], right: [f64; 3]) -> Option<[f64; BASE]> {
+        let mut system = [[0.0; BODIES + 1]; BASE];
+        for (i, row) in system.iter_mut().enumerate() {
+            row[..BASE].copy_from_slice(&rows[i]);
+            row[BODIES] = right[i];
+        }
+        eliminate(&mut system, [1.0; BASE])
+    }
+
+    #[test]
+    fn a_system_is_solved_unless_it_is_singular() {
+        let rows = [[0.0, 2.0, 0.0], [4.0, 1.0, 0.0], [0.0, 1.0, 8.0]];
+        assert_eq!(solution(rows, [2.0, 9.0, 17.0]), Some([2.0, 1.0, 2.0]));
+        let equal = [[1.0, 2.0, 3.0], [1.0, 2.0, 3.0], [0.0, 0.0, 1.0]];
+        assert_eq!(solution(equal, [1.0, 2.0, 3.0]), None);
+        for wrong in [f64::NAN, f64::INFINITY] {
+            assert_eq!(solution([[wrong; 3]; 3], [1.0; 3]), None);
+        }
+    }
+}
