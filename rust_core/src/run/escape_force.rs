@@ -107,8 +107,9 @@ mod tests {
     use super::*;
     use crate::scenario::{ForceSupport, ForceTrack, Scenario, Track};
 
-    /// The Engineer without motor force on skids of some friction, 1 m in front of a step.
-    fn skids(skid_friction: f64) -> ValidScenario {
+    /// The Engineer without motor force on skids of some friction, 1 m in front of a step, its centre of mass that high [m] over
+    /// its axles.
+    fn skids(skid_friction: f64, height: f64) -> ValidScenario {
         let text = include_str!("../../../tests/scenarios/engineer_belt_step.json");
         let mut scenario = Scenario::from_json(text).expect("the shared scenario is valid");
         scenario.robot.track = Track::Force(ForceTrack {
@@ -117,6 +118,7 @@ mod tests {
             wheel_count: 5,
         });
         scenario.robot.drivetrain.max_torque = 0.0;
+        scenario.robot.center_of_mass = [0.0, height];
         scenario.start.approach = 1.0;
         ValidScenario::new(&scenario).expect("it is valid")
     }
@@ -126,11 +128,22 @@ mod tests {
     #[test]
     fn the_force_lies_between_two_levels_from_a_hundredth_of_the_weight_on() {
         for (friction, low, high) in [(0.0, 0.0, 2.079_72), (0.048, 9.556_26, 10.511_88)] {
-            let found = escape_force(&skids(friction), 0.1, &Cancel::default());
+            let found = escape_force(&skids(friction, 0.02), 0.1, &Cancel::default());
             let found = found.expect("it stays finite");
             assert!((found.low - low).abs() < 1e-4, "{found:?}");
             assert!((found.high - high).abs() < 1e-4, "{found:?}");
             assert!(!found.tips, "{found:?}");
         }
+    }
+
+    /// Its axles are 0.365 m apart and 0.064 m over the ground, so a push 0.3 m above them tips it about the front one from
+    /// 0.1825 / 0.364 = 0.5014 of its weight on, that is between 1.1^41 / 100 and 1.1^42 / 100. Its friction would bear all of it.
+    #[test]
+    fn a_push_high_above_skids_that_hold_tips_the_robot() {
+        let found = escape_force(&skids(1.0, 0.3), 0.1, &Cancel::default());
+        let found = found.expect("it stays finite");
+        assert!((found.low - 103.54).abs() < 0.1, "{found:?}");
+        assert!((found.high - 113.89).abs() < 0.1, "{found:?}");
+        assert!(found.tips, "{found:?}");
     }
 }

@@ -361,6 +361,24 @@ mod tests {
         assert_eq!(of(ShoeShape::Trapezoid), [whole]);
     }
 
+    /// Its own surface lies inside where it is built, and what it carries stays beyond that.
+    #[test]
+    fn a_guide_ends_where_it_is_built_however_far_inside_its_surface_lies() {
+        let disc = Disc {
+            center: Vector::new(0.1, 0.2),
+            radius: 0.05,
+        };
+        for inside in [0.0, 0.002, 0.01] {
+            let found: Vec<_> = guide_of(&[disc], inside, 0.004).discs().collect();
+            let [(tip, root)] = found[..] else {
+                panic!("{found:?}");
+            };
+            assert!((tip.radius - 0.054).abs() < 1e-15, "{tip:?}");
+            assert!((root.radius - (0.05 - inside)).abs() < 1e-15, "{root:?}");
+            assert!((tip.center - disc.center).length() < 1e-15);
+        }
+    }
+
     /// The Engineer weighs 207.972 N, of which a track pulls with a fortieth, and its track 2.4 kg. Both tracks
     /// together have twice what one has.
     #[test]

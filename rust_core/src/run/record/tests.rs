@@ -96,3 +96,14 @@ fn a_sample_needs_room_for_its_numbers_and_for_contacts_of_half_of_the_parts() {
     let expected = 8 * (14 + 3 + 3 * 40) + 41 * 8 * 15;
     assert_eq!(bytes(&chain.robot), expected);
 }
+
+#[test]
+fn a_message_says_how_many_runs_need_the_room_and_what_would_need_less() {
+    let run = ValidScenario::new(&level()).expect("it is valid");
+    let two = [run.clone(), run];
+    let sampled =
+        "a run sampled every 0.01 s (a longer sample_interval, or \"summary\", takes less)";
+    assert_eq!(described(&two[..1], Record::default()), sampled);
+    assert_eq!(described(&two[..1], Record::summary()), "a run");
+    assert_eq!(described(&two, Record::summary()), "a batch of 2 runs");
+}

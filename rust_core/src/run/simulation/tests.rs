@@ -2,11 +2,13 @@
 
 use super::*;
 use crate::contact::Contact;
+use crate::dynamics::FlipperCommand;
 use crate::geometry::direction;
 use crate::observe::Outcome;
+use crate::run::ByHand;
 use crate::scenario::{
-    ChainMechanism, Engine, ForceSupport, ForceTrack, GearWheel, LineOfWheels, SegmentalTrack,
-    ShoeShape, Surface, Terrain, Track, Wheel,
+    ChainMechanism, End, Ends, Engine, ForceSupport, ForceTrack, GearWheel, LineOfWheels,
+    SegmentalTrack, ShoeShape, Surface, Terrain, Track, Wheel,
 };
 
 fn engineer() -> Scenario {
@@ -425,4 +427,52 @@ fn a_bent_pin_stores_half_of_its_stiffness_times_the_square_of_its_angle() {
     simulation.state.shoes[middle].angle += 0.01;
     let gained = simulation.energy() - before;
     assert!((gained - 8e-4).abs() < 1e-10, "{gained} J");
+}
+
+/// Their roots are as large as the wheels, and bear on level ground while they are raised.
+#[test]
+fn arms_touch_the_ground_where_they_bear_beyond_their_roots() {
+    let text = include_str!("../../../../tests/scenarios/engineer_flippers_step.json");
+    let mut scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+    let flippers = scenario.robot.flippers.as_mut().expect("it has some");
+    flippers.ends = Ends::Both;
+    scenario.robot.moment_of_inertia = 1.0;
+    scenario.drive.gait = None;
+    scenario.drive.speed = 0.0;
+    scenario.start.approach = 1.0;
+    let checked = ValidScenario::new(&scenario).expect("it is valid");
+    let touches = |angles: [f64; 2]| {
+        let mut simulation = Simulation::new(&checked);
+        let commands = ByHand {
+            speed: None,
+            flippers: angles.map(|angle| Some(FlipperCommand::Angle(angle))),
+            push: None,
+        };
+        simulation
+            .command_all(&commands)
+            .expect("they are within limits");
+        run_until(&mut simulation, 1.5);
+        [End::Front, End::Rear].map(|end| simulation.flipper_touches(end))
+    };
+    assert_eq!(touches([0.8, 0.8]), [false, false]);
+    assert_eq!(touches([-0.2, 0.8]), [true, false]);
+    assert_eq!(touches([0.8, -0.2]), [false, true]);
+    assert_eq!(touches([-0.2, -0.2]), [true, true]);
+}
+
+/// It speeds up evenly on level ground, so a mean over a part of a step is the speed in its middle.
+#[test]
+fn a_robot_that_drives_straight_on_has_a_path_as_long_as_its_way() {
+    let mut scenario = engineer();
+    scenario.start.approach = 1.0;
+    let checked = ValidScenario::new(&scenario).expect("it is valid");
+    let mut simulation = Simulation::new(&checked);
+    let begin = simulation.reading().position.x;
+    run_until(&mut simulation, 1.0);
+    let way = simulation.reading().position.x - begin;
+    let path = simulation.monitor.observed.path_length;
+    assert!(
+        (path - way).abs() < 1e-4 * way && way > 0.05,
+        "{path} {way}"
+    );
 }

@@ -369,3 +369,31 @@ fn twice_the_torque_and_twice_the_friction_are_twice_as_much_up_to_what_there_ma
     ground.scale_friction(1e9);
     assert_eq!(rubs(&ground), 100.0);
 }
+
+/// Of a stop without ground inside the track only time is tried; of a jam a belt, too, and the belly only if nothing is jammed.
+#[test]
+fn only_what_decides_the_verdict_is_tried_unless_more_is_asked_for() {
+    let made = |scenario: &Scenario| -> (Outcome, Vec<&str>) {
+        let found = why(scenario, Wanted::default());
+        let names = found.trials.iter().map(|trial| trial.name);
+        (found.symptom, names.collect())
+    };
+    let mut weak = engineer();
+    weak.robot.drivetrain.max_torque = 0.7;
+    assert_eq!(made(&weak), (Outcome::Stalled, vec!["unchanged"]));
+    let of_jam = [
+        "unchanged",
+        "rebuilt",
+        "closed track",
+        "closed track, clear of the ground",
+        "belt, from the start",
+    ];
+    assert_eq!(made(&wheels(4, 0.08)).1, of_jam);
+    let mut on_a_barrier = wheels(2, 0.0);
+    on_a_barrier.terrain = barrier(0.06, 0.2);
+    assert_eq!(made(&on_a_barrier), (Outcome::HungUp, of_jam.to_vec()));
+    // A belt that stops there, too, leaves it open whether the track comes so far.
+    let (_, high) = made(&wheels(4, 0.1));
+    assert_eq!(high[..5], of_jam);
+    assert_eq!(high[5..], ["closed track, from the start"]);
+}
