@@ -166,3 +166,29 @@ impl Piece<'_> {
 fn deeper(a: (f64, Vector), b: (f64, Vector)) -> (f64, Vector) {
     if b.0 > a.0 { b } else { a }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Disc;
+
+    #[test]
+    fn the_way_between_two_places_of_a_belt_is_that_ahead_round_it() {
+        let discs = [-0.3, 0.3].map(|x| Disc {
+            center: Vector::new(x, 0.0),
+            radius: 0.1,
+        });
+        let belt = Envelope::new(&discs);
+        let whole = belt.length();
+        for (from, to, expected) in [
+            (0.1, 0.3, 0.2),
+            (0.3, 0.1, whole - 0.2),
+            (0.2, 0.2, 0.0),
+            (0.2, 0.2 - 1e-15, 0.0),
+            (whole - 0.05, 0.05, 0.1),
+        ] {
+            let found = travel_between(&belt, from, to);
+            assert!((found - expected).abs() < 1e-12, "{from} {to}: {found} m");
+        }
+    }
+}

@@ -272,6 +272,24 @@ mod tests {
         }
     }
 
+    /// An axle distance says where two discs are if the frame is midway between them.
+    #[test]
+    fn texts_have_an_axle_distance_if_that_says_where_both_discs_are() {
+        let (rear, front) = ([-0.2, 0.0, 0.1], [0.2, 0.0, 0.08]);
+        for (discs, is_short) in [
+            (vec![rear, front], true),
+            (vec![front, rear], false),
+            (vec![rear, [0.3, 0.0, 0.08]], false),
+            (vec![rear, [0.2, 0.01, 0.08]], false),
+            (vec![[-0.2, 0.01, 0.1], front], false),
+            (vec![rear, [0.0, 0.0, 0.1], front], false),
+        ] {
+            let text = serde_json::to_value(outline(&discs)).expect("it can be written");
+            assert_eq!(text.get("axle_distance").is_some(), is_short, "{text}");
+            assert_eq!(text.get("discs").is_some(), !is_short, "{text}");
+        }
+    }
+
     /// At either end, the axle of a small disc is farther out than that of a large one which reaches farther.
     #[test]
     fn the_end_discs_are_those_that_reach_farthest() {

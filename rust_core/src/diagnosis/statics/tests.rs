@@ -129,3 +129,23 @@ fn a_plank_tips_where_its_weight_leaves_the_base() {
     assert!(plank([-1.0, 0.5]).imbalance().unwrap() < 1e-8);
     assert!(plank([-1.0, -0.5]).imbalance().unwrap() > 0.1);
 }
+
+/// On a slope as steep as the friction angle a block slides down at an even speed, whichever side the slope falls to. One that
+/// slid up it would be pulled down by twice the weight's share along it.
+#[test]
+fn a_block_that_slides_down_at_the_friction_angle_is_balanced_on_either_side() {
+    let friction: f64 = 0.5;
+    let (sine, cosine) = libm::sincos(libm::atan(friction));
+    for side in [1.0, -1.0] {
+        let imbalance = |slides: f64| {
+            let on = |lever: f64| Support {
+                slides,
+                ..support(Vector::new(-side * sine, cosine), [lever, 0.0], friction)
+            };
+            block(vec![on(1.0), on(-1.0)]).imbalance().unwrap()
+        };
+        // A tangent is its normal turned clockwise: uphill where the slope rises to the right.
+        assert!(imbalance(-side) < 1e-8, "{side}");
+        assert!(imbalance(side) > 0.1, "{side}");
+    }
+}

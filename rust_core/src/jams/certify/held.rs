@@ -222,6 +222,24 @@ mod tests {
         (cell, (surface, place))
     }
 
+    #[test]
+    fn the_gap_between_a_run_and_an_edge_is_how_far_the_run_is_raised() {
+        let family = family_on_a_step();
+        let (touching, pair) = on_the_edge(&family, 0.1, 0.0);
+        let up = Vector::from_angle(0.3).rotate(Vector::Y);
+        for height in [-1e-3, 0.0, 2e-3] {
+            let mut raised = touching;
+            for (k, part) in [up.x, up.y].into_iter().enumerate() {
+                raised.low[k] += height * part;
+                raised.high[k] += height * part;
+            }
+            let (gap, row) = family.gap(&raised, pair);
+            assert!((gap.middle() - height).abs() < 1e-12 && gap.half() < 1e-12);
+            assert!((row[0].middle() - up.x).abs() < 1e-12);
+            assert!((row[1].middle() - up.y).abs() < 1e-12);
+        }
+    }
+
     /// The belly is 0.365 m long. Whether wheels are in the way does not matter here.
     #[test]
     fn a_run_is_on_an_edge_if_it_is_there_between_its_ends_all_over_a_cell() {

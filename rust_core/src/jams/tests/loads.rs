@@ -163,3 +163,32 @@ fn two_feet_share_the_weight_by_their_levers() {
     assert!(on(&[-0.3, -0.1]).is_none() && on(&[0.3, 0.1]).is_none());
     assert!(on(&[0.0]).is_some() && on(&[0.01]).is_none());
 }
+
+/// Four wheels in a line on a slope, standing still: more than three forces can carry it, and none has more friction than its load
+/// allows.
+#[test]
+fn loads_of_a_robot_on_more_supports_than_three_add_up_to_the_weight() {
+    let (friction, radius) = (0.5, 0.05);
+    let normal = Vector::from_angle(0.2).rotate(Vector::Y);
+    let along = right_of(normal);
+    let at = Posture {
+        position: normal * radius,
+        angle: 0.2,
+    };
+    let face = Facing::Face {
+        ends: [along * -1.0, along],
+        normal,
+    };
+    let disc = |x: f64| {
+        let center = Vector::new(x, 0.0);
+        surface(Outline::Round(Disc { center, radius }), Grip::Still)
+    };
+    let surfaces = [-0.3, -0.1, 0.1, 0.3].map(disc).to_vec();
+    let setting = setting(surfaces, vec![place(face, friction)], Vector::ZERO);
+    let loads = setting.loads(&[0, 1, 2, 3], &at).expect("they carry it");
+    let sum = |k: usize| loads.iter().map(|load| load[k]).sum::<f64>();
+    assert!((sum(0) - libm::cos(0.2)).abs() < 1e-12, "{loads:?}");
+    assert!((sum(1).abs() - libm::sin(0.2)).abs() < 1e-12, "{loads:?}");
+    let holds = |[load, pull]: &[f64; 2]| *load >= 0.0 && pull.abs() <= friction * load + 1e-12;
+    assert!(loads.iter().all(holds), "{loads:?}");
+}

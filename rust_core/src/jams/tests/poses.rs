@@ -395,3 +395,33 @@ fn the_pose_of_two_wheels_whose_circles_are_one_is_found() {
         );
     }
 }
+
+/// Between wheels that touch, a sharp corner could only be a needle. With a gap between them it can touch both.
+#[test]
+fn a_corner_between_two_wheels_that_touch_is_one_contact() {
+    let corner = Facing::Corner {
+        center: Vector::new(0.6, 0.0),
+        radius: 0.0,
+        cone: [Vector::X, Vector::Y],
+    };
+    let is_one = |radii: [f64; 2], apart: f64| {
+        let disc = |x: f64, radius: f64| {
+            let center = Vector::new(x, 0.0);
+            surface(Outline::Round(Disc { center, radius }), Grip::Free)
+        };
+        let surfaces = vec![disc(0.0, radii[0]), disc(apart, radii[1])];
+        let setting = setting(surfaces, vec![place(corner, 0.5)], Vector::ZERO);
+        let [one, other] = setting.contacts[..] else {
+            panic!("each can touch it");
+        };
+        one.is_one_with(&other, 1e-9)
+    };
+    for radii in [[0.05, 0.05], [0.03, 0.08], [0.08, 0.03]] {
+        let sum = radii[0] + radii[1];
+        assert!(is_one(radii, sum) && !is_one(radii, sum + 1e-6));
+        // Side by side they overlap, and a corner may touch both; one that lies within the other has it to itself.
+        let difference = (radii[0] - radii[1]).abs();
+        assert!(!is_one(radii, sum - 1e-6) && !is_one(radii, difference + 1e-6));
+        assert!(is_one(radii, 0.5 * difference));
+    }
+}

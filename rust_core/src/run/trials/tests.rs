@@ -375,6 +375,7 @@ fn twice_the_torque_and_twice_the_friction_are_twice_as_much_up_to_what_there_ma
 fn only_what_decides_the_verdict_is_tried_unless_more_is_asked_for() {
     let made = |scenario: &Scenario| -> (Outcome, Vec<&str>) {
         let found = why(scenario, Wanted::default());
+        assert!(!found.is_transient());
         let names = found.trials.iter().map(|trial| trial.name);
         (found.symptom, names.collect())
     };
@@ -396,4 +397,41 @@ fn only_what_decides_the_verdict_is_tried_unless_more_is_asked_for() {
     let (_, high) = made(&wheels(4, 0.1));
     assert_eq!(high[..5], of_jam);
     assert_eq!(high[5..], ["closed track, from the start"]);
+}
+
+#[test]
+fn of_a_stop_that_rattles_two_starts_that_stay_decide_or_four_that_get_away() {
+    let (_, stop) = stopped(None);
+    let found = stop.examine().expect("it is stopped");
+    let cancel = Cancel::default();
+    let mut series = TrialSeries::new(&stop, &found, &cancel);
+    series.rattles = true;
+    let mut counts = |change| {
+        let freed = series.frees(change).expect("the state stays finite");
+        let made = series.trials.last().expect("it makes sense");
+        (freed, made.starts, made.freeing)
+    };
+    assert_eq!(counts(Change::Rebuilt), (false, 2, 0));
+    assert_eq!(counts(Change::ClosedTrack), (true, 4, 4));
+    // Of a run that goes on one is enough.
+    assert_eq!(counts(Change::Nothing), (false, 1, 0));
+}
+
+/// At 0.4 m/s for 0.25 s, on level ground.
+#[test]
+fn a_trial_ends_after_its_time_wherever_the_robot_is() {
+    let (scenario, stop) = stopped(None);
+    let found = stop.examine().expect("it is stopped");
+    let cancel = Cancel::default();
+    let series = TrialSeries::new(&stop, &found, &cancel);
+    let checked = ValidScenario::new(&scenario).expect("the scenario is valid");
+    let mut begin = stop.reading().position;
+    begin.x -= 1.0;
+    begin.y = 0.064;
+    let driving = Simulation::driven_at(&checked, begin, 0.0);
+    let made = series.follow(driving, "driving", 0.25);
+    let made = made.expect("the state stays finite");
+    assert!((made.duration - 0.25).abs() < 1e-15);
+    let way = made.pose[0] - begin.x;
+    assert!(way > 0.01 && way < 0.4 * 0.25 + 1e-3, "{way} m");
 }

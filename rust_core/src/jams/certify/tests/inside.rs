@@ -107,3 +107,22 @@ fn where_a_cell_is_as_on_a_belt_no_clear_pose_of_it_has_deeper_ground() {
     // In a single pose hardly anything is left open.
     assert!(undecided < 10, "{undecided}");
 }
+
+/// Of 4 m of ground only what is under the robot matters, wherever that is.
+#[test]
+fn level_ground_is_as_deep_inside_a_track_as_that_is_lowered_into_it() {
+    let family = family_on_a_step();
+    let radius = family.tracks[0].discs[0].radius;
+    let setting = family.setting(&[0.0; 4], &Cancel::default());
+    let places = setting.expect("there are few contacts").places;
+    for x in [-2.0, -1.0, -0.5] {
+        for lowered in [0.0, 0.01, 0.03] {
+            let at = Posture {
+                position: Vector::new(x, radius - lowered),
+                angle: 0.0,
+            };
+            let found = family.depth(&places, &at);
+            assert!((found - lowered).abs() < 1e-9, "{x} m: {found} m");
+        }
+    }
+}

@@ -38,6 +38,18 @@ fn overlap(simulation: &mut Simulation, way: Displacement) -> f64 {
 }
 
 #[test]
+fn a_robot_is_raised_straight_up_from_its_own_floor() {
+    for turn in [-0.4, 0.3] {
+        let mut buried = on_a_post(0.05, [0.0, 0.0, 0.0]);
+        let half = buried.half_length();
+        buried.displace([0.0, 0.0, turn * half]);
+        let [x, y, turned] = buried.raised_clear().expect("there is room above it");
+        assert!(turned == 0.0 && y > 0.0);
+        assert!((x / y + libm::tan(turn)).abs() < 1e-12, "{x} {y}");
+    }
+}
+
+#[test]
 fn no_pose_of_a_grid_is_nearer_and_clear() {
     let poses = [
         (0.03, [0.0, 0.01, 0.0]),
