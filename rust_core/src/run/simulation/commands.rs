@@ -383,7 +383,7 @@ mod driver_tests {
             FlipperCommand::Angle(0.3),
         ];
         assert_eq!(after(&[(0.0, nothing), (0.05, front)]), sweep);
-        assert_eq!(after(&[(0.0, front), (0.0, front), (0.05, front)]), sweep);
+        assert_eq!(after(&[(0.0, front), (0.05, front)]), sweep);
         assert_eq!(after(&[(0.05, front), (0.0, nothing)]), reach);
     }
 

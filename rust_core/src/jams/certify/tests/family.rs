@@ -101,6 +101,31 @@ fn arms_count_in_the_moment_of_inertia_where_they_are_held() {
 }
 
 #[test]
+fn the_track_of_an_arm_is_where_the_arm_is_held() {
+    let text = include_str!("../../../../../tests/scenarios/engineer_flippers_step.json");
+    let mut scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+    let wheels = super::scenario(0.07, 0.5).robot.track;
+    let arms = scenario.robot.flippers.as_mut().expect("it has some");
+    arms.track = Some(wheels.clone());
+    let (angle, length) = (arms.angle, arms.length);
+    scenario.robot.track = wheels;
+    let (model, ground) = built(&scenario);
+    let found = Family::new(&[(&model, &ground)], &[], true, MOST_ANGLE).expect("it has wheels");
+    let pivot = model.flippers[0].pivot;
+    let tip = pivot + Vector::from_angle(angle) * length;
+    let ends = |center: Vector| {
+        let near = |track: &crate::jams::certify::family::Track| {
+            let of = |disc: &crate::geometry::Disc| (disc.center - center).length() < 1e-12;
+            track.discs.iter().any(of)
+        };
+        found.tracks.iter().map(near).collect::<Vec<bool>>()
+    };
+    // Its root is on the front axle, which is the chassis's, too.
+    assert_eq!(ends(tip), [false, true]);
+    assert_eq!(ends(pivot), [true, true]);
+}
+
+#[test]
 fn a_face_ends_at_the_corner_that_rounds_its_end() {
     let family = family_on_a_step();
     let is_corner = |spot: &&crate::jams::certify::family::Spot| {
