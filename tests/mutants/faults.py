@@ -32,6 +32,8 @@ EQUIVALENT = [
     ('is_changed = [line[0] in "-+"', "'-+' -> '-+x'", "no line of a diff begins so"),
     ("range(len(lines) - 1", "1 -> 2", "the last line alone joins with none"),
     ("seconds = int(used", "1 -> 2", "the timer ends it before"),
+    ("one = replace(runs, samples=1", "1 -> 2", "two runs have the paths of one"),
+    ("duration = round(max(_LENGTHS", "1.0 -> 1.01", "it is rounded to a tenth of a second"),
     ("_MARK = ", "'\\x00' -> '\\x00x'", "no text of a file has the one or the other"),
     (
         '"left" if runner.z > work.view.middle',

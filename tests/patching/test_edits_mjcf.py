@@ -47,6 +47,19 @@ def test_torques_of_mjcf_are_limited_in_three_places(tmp_path: Path) -> None:
     assert found["velocity@kv"] == {(SQUARE,)}
 
 
+def test_a_general_servo_of_speed_by_position_scales_its_limits_and_keeps_its_gear(
+    tmp_path: Path,
+) -> None:
+    """It integrates its control: MuJoCo's intvelocity, written out."""
+    servo = 'dyntype="integrator" biastype="affine" gainprm="40" biasprm="0 -40 -1" gear="1"'
+    limits = 'forcerange="-5 5" ctrlrange="-10 10" actrange="-1000 1000"'
+    reading = mjcf(tmp_path, (OF_WHEELS, rf"<general \1 {servo} {limits}/>"))
+    found = factors(reading.text, resized(reading, 0.1))
+    assert found["general@forcerange"] == {(SIZE, SIZE)}
+    assert found["general@ctrlrange"] == {(1.0 / SIZE, 1.0 / SIZE)}
+    assert "general@gear" not in found
+
+
 SERVO = '<velocity kv="10" forcerange="-5 5" ctrlrange="-10 10"/>'
 OF_CLASS = ("<default>", f'<default><default class="m">{SERVO}</default>')
 OF_WHEELS = r"<velocity (joint=\"\w+_(?:rear|middle|front)_joint\") [^/]*/>"

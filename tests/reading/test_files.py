@@ -309,3 +309,12 @@ def test_a_child_process_that_hangs_is_ended_by_its_time_limit() -> None:
     wait = "import os; from crawler2d.reading import parsing; parsing.CLOCK = 0.1; parsing._limit()"
     done = subprocess.run([sys.executable, "-c", f"{wait}; os.read(os.pipe()[0], 1)"], check=False)
     assert done.returncode == -signal.SIGALRM
+
+
+@pytest.mark.skipif(not Path("/proc/self/statm").is_file(), reason="asks Linux for its size")
+@pytest.mark.parametrize(("size", "end"), [(20_000_000, ""), (100_000_000, "MemoryError")])
+def test_a_child_process_gets_no_more_memory_than_its_limit(size: int, end: str) -> None:
+    limit = "from crawler2d.reading import parsing; parsing.MEGABYTES = 50; parsing._limit()"
+    command = [sys.executable, "-c", f"{limit}; bytearray({size})"]
+    done = subprocess.run(command, stderr=subprocess.PIPE, text=True, check=False)
+    assert done.stderr.strip().rpartition("\n")[2] == end

@@ -9,6 +9,7 @@ import pytest
 import crawler2d as c2d
 from tests.kept import refusing
 from tests.reading.carts import (
+    FILES,
     LIMIT,
     SAID,
     SIDES,
@@ -17,6 +18,7 @@ from tests.reading.carts import (
     left_out,
     link,
     pair,
+    quietly,
     read,
     refused,
     tracked,
@@ -55,6 +57,27 @@ def test_a_wheel_in_the_middle_is_refused(tmp_path: Path) -> None:
 def test_wheels_on_slides_are_refused_as_suspension(tmp_path: Path) -> None:
     kind = 'type="prismatic"><axis xyz="0 0 1"/>' + LIMIT
     refused(tmp_path, on_links(kind), "a side view has no suspension")
+
+
+@pytest.mark.parametrize(
+    ("joint", "kind", "rule"),
+    [
+        ('type="slide" axis="0 0 1"', "slide", "carry no wheels: a side view has no suspension"),
+        ('type="ball"', "ball", "be fixed or turn about an axis, to carry wheels"),
+    ],
+)
+def test_wheels_on_a_slide_or_a_ball_of_mjcf_are_refused_by_its_kind(
+    tmp_path: Path, joint: str, kind: str, rule: str
+) -> None:
+    own = ' axis="0 1 0" range="-1.5 1.5"/>'
+    text = (FILES / "cart.xml").read_text(encoding="utf-8")
+    line = 1 + text[: text.index(own)].count("\n")
+    path = tmp_path / "cart.xml"
+    path.write_text(text.replace(own, f" {joint}/>"), encoding="utf-8")
+    with pytest.raises(c2d.ScenarioError) as caught:
+        quietly(path)
+    assert caught.value.path == f"cart.xml:{line}: joint[left_flipper_joint]"
+    assert (caught.value.value, caught.value.rule) == (kind, f"must {rule}")
 
 
 def test_wheels_on_a_steered_joint_are_refused(tmp_path: Path) -> None:

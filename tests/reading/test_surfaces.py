@@ -208,6 +208,18 @@ def test_one_wheel_a_side_with_castors_stands_on_all_three(tmp_path: Path) -> No
     assert c2d.simulate(found.robot, c2d.terrains.flat()).outcome == "cleared"
 
 
+@pytest.mark.parametrize(("kind", "wheels"), [("fixed", 3), ("continuous", 2)])
+def test_a_wheel_on_which_another_link_turns_is_no_wheel(
+    tmp_path: Path, kind: str, wheels: int
+) -> None:
+    turning = f'type="{kind}">'
+    caps = "".join(link(f"{side}_cap", turning, parent=f"{side}_mid") for side, _ in SIDES)
+    found = read(tmp_path, urdf(WHEELS, pair("mid", 0.0), caps))
+    assert len(found.wheels) == 2 * wheels
+    told = "left_mid, right_mid: move by themselves, and touch nothing here" in found.notes
+    assert told == (kind == "continuous")
+
+
 @pytest.mark.parametrize("ahead", [1.0, -1.0])
 @pytest.mark.parametrize(("radius", "lower"), [("0.08", 0.0), ("0.03", -0.05)])
 def test_one_wheel_a_side_may_trail_a_castor_or_push_it(

@@ -211,6 +211,18 @@ def test_an_unknown_name_is_refused_with_the_nearest(
     )
 
 
+@pytest.mark.parametrize(
+    ("columns", "value"), [((), "none"), (("time",), "time"), (("time", "energy"), "time, energy")]
+)
+def test_a_table_without_outcomes_is_refused_with_its_columns(
+    columns: tuple[str, ...], value: str
+) -> None:
+    with pytest.raises(c2d.ScenarioError) as caught:
+        rate(xr.Dataset(dict.fromkeys(columns, 1.0)))
+    told = (caught.value.path, caught.value.value, caught.value.rule)
+    assert told == ("table", value, "must have a column outcome")
+
+
 def test_a_data_set_without_its_figure_attribute_has_no_figure() -> None:
     pytest.importorskip("matplotlib")
     bare = rate(TABLE).mean("height", keep_attrs=False)
