@@ -9,7 +9,7 @@ import pytest
 import crawler2d as c2d
 from crawler2d.reading.engines import ENGINES, Engine
 from tests.kept import check_said
-from tests.reading.carts import FILES, SAID, SIDES, pair, read, urdf
+from tests.reading.carts import FILES, SAID, SIDES, pair, quietly, read, urdf
 
 
 def mjcf(joint: str, changed: str = "") -> str:
@@ -252,6 +252,24 @@ def test_bullet_multiplies_two_coefficients(tmp_path: Path) -> None:
     assert read(tmp_path, stated(), engine="bullet").friction == 0.25
     assert read(tmp_path, stated(), engine="bullet", ground_friction=1.0).friction == 0.5
     assert read(tmp_path, stated(), engine="classic").friction == 1.0
+
+
+@pytest.mark.parametrize(
+    ("engine", "friction", "source"),
+    [
+        ("gz", 0.6, "0.75 along the track, min with 0.6 of the ground"),
+        ("classic", 0.6, "0.75 along the track, min with 0.6 of the ground"),
+        ("bullet", 0.3, "0.5, the engine's default, along the track, product with 0.6 of the"),
+        ("mujoco", 0.75, "0.75 along the track, max with 0.6 of the ground"),
+        ("isaac", 0.675, "0.75 along the track, mean with 0.6 of the ground"),
+    ],
+)
+def test_the_source_of_friction_names_how_an_engine_combines_it(
+    engine: str, friction: float, source: str
+) -> None:
+    found = quietly(FILES / "cart.urdf", engine=engine, ground_friction=0.6)
+    assert found.friction == pytest.approx(friction)
+    assert found.sources["friction"].startswith(source)
 
 
 def test_bullet_reads_its_own_friction_of_a_urdf_only(tmp_path: Path) -> None:

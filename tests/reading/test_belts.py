@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import crawler2d as c2d
-from tests.reading.carts import SIDES, TRACKED, read, refused, tracked
+from tests.reading.carts import SIDES, TRACKED, quietly, read, refused, tracked
 
 TRAPEZOID = ((-0.5, 0.1, 0.1), (-0.3, 0.0, 0.1), (0.3, 0.0, 0.1), (0.5, 0.1, 0.08))
 """A raised sprocket, two road wheels and a raised idler: x, z and radius [m]."""
@@ -168,6 +168,16 @@ def test_a_flipper_has_a_belt_round_two_drums(tmp_path: Path) -> None:
     assert (flippers.root_radius, flippers.tip_radius) == (0.1, 0.05)
     third = (0.15, -0.08, 0.05)
     refused(tmp_path, on_flippers(*drums, third), "flippers have two", "tank.sdf")
+
+
+def test_of_drums_beyond_the_belt_of_a_flipper_the_rearmost_is_named(tmp_path: Path) -> None:
+    ends = (0.0, 0.0, 0.1), (0.3, 0.0, 0.05)
+    path = tmp_path / "tank.sdf"
+    path.write_text(on_flippers(*ends, (0.2, -0.08, 0.05), (0.1, -0.08, 0.05)))
+    with pytest.raises(c2d.ScenarioError) as caught:
+        quietly(path)
+    assert caught.value.path.endswith(": drum[left_arm/d3]")
+    assert caught.value.value == "2 beyond the belt round the end drums"
 
 
 def test_a_belt_of_a_flipper_that_does_not_run_round_its_pivot_is_refused(tmp_path: Path) -> None:

@@ -3,6 +3,7 @@
 import itertools
 import math
 import pickle
+import re
 from pathlib import Path
 from typing import Any
 
@@ -105,6 +106,18 @@ def test_mjcf_that_includes_other_files_is_refused(tmp_path: Path) -> None:
     text = '<mujoco><include file="robot.xml"/></mujoco>'
     with refusing(SAID, "must contain the robot itself"):
         read(tmp_path, text, "scene.xml")
+
+
+@pytest.mark.parametrize(("file", "value"), [(' file="robot.xml"', "robot.xml"), ("", "")])
+def test_an_include_of_mjcf_is_refused_with_its_file_and_its_line(
+    file: str, value: str, tmp_path: Path
+) -> None:
+    path = tmp_path / "cart.xml"
+    path.write_text(f"<mujoco>\n<include{file}/></mujoco>", encoding="utf-8")
+    with pytest.raises(c2d.ScenarioError) as caught:
+        quietly(path)
+    assert (caught.value.path, caught.value.value) == ("cart.xml:2: mujoco/include", value)
+    assert caught.value.rule.startswith("must contain the robot itself")
 
 
 def test_a_mjcf_robot_that_does_not_float_is_refused(tmp_path: Path) -> None:
@@ -395,3 +408,15 @@ def test_no_wheel_moves_more_than_its_mass_with_the_track(tmp_path: Path) -> Non
     assert reading.robot.track_mass == pytest.approx(2 * 1.0 + 2 * 0.5, rel=1e-12)
     assert reading.sources["robot.track_mass"].startswith("estimate: the mass of the wheels")
     assert "robot.track_mass is limited to hoops" in reading.warnings[0]
+
+
+@pytest.mark.parametrize(("pairs", "listed", "more"), [(6, 12, []), (7, 12, [2]), (8, 12, [4])])
+def test_a_reading_lists_twelve_wheels_and_counts_the_others(
+    tmp_path: Path, pairs: int, listed: int, more: list[int]
+) -> None:
+    places = (0.2 * k for k in range(pairs))
+    path = tmp_path / "cart.urdf"
+    path.write_text(urdf(*(pair(f"w{k}", x) for k, x in enumerate(places))), encoding="utf-8")
+    text = str(quietly(path, forward="+x"))
+    assert text.count(" chassis: x ") == listed
+    assert [int(each) for each in re.findall(r"and (\d+) more: see \.wheels", text)] == more

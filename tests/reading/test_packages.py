@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from crawler2d.reading.files import VARIABLES
-from tests.reading.carts import WHEELS, XACRO, collision, left_out, read, refused, urdf
+from tests.reading.carts import WHEELS, XACRO, collision, left_out, quietly, read, refused, urdf
 
 OBJ = "\n".join(f"v {x} {y} {z}" for x in (-0.1, 0.1) for y in (-0.1, 0.1) for z in (0.0, 0.05))
 NAMED = ("package://parts/", "model://parts/", "$(find parts)/", "file://$(find-pkg-share parts)/")
@@ -200,3 +200,16 @@ def test_settings_of_another_package_of_the_repository_are_not_taken(clone: Path
     refused(folder, text, "must have a value for each argument", "cart.xacro")
     (clone / "models" / "sizes.yaml").write_text("\n\nhull: 3")
     assert read(folder, text, "cart.xacro").robot.mass == 7.0  # with four wheels of 1 kg
+
+
+def test_a_file_that_is_named_only_before_settings_are_known_gets_no_warning(clone: Path) -> None:
+    """An argument is 0 until its setting is found."""
+    for size in ("0", "small"):
+        package(clone / "any" / "parts" / size, manifest="")
+    cart = clone / "models" / "cart"
+    (cart / "sizes.yaml").write_text("size: small")
+    include = '<xacro:include filename="$(find parts)/$(arg size)/wheels.xacro"/>'
+    (cart / "cart.xacro").write_text(urdf(include).replace('<robot name="cart">', XACRO))
+    warned = quietly(cart / "cart.xacro").warnings
+    assert sum("small/wheels.xacro: no package has that name" in each for each in warned) == 1
+    assert not any("0/wheels.xacro" in each for each in warned)

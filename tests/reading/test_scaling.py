@@ -119,3 +119,12 @@ def test_mjcf_cannot_be_scaled() -> None:
 def test_a_file_in_millimetres_is_refused_with_the_scale_that_corrects_it(tmp_path: Path) -> None:
     with refusing(SAID, r"scale=0\.001 would correct that"):
         read(tmp_path, urdf(pair("front", 200.0), pair("rear", -200.0)))
+
+
+def test_a_mesh_without_a_scale_gets_that_of_the_file() -> None:
+    urdf = '<robot><mesh filename="m.stl"{}/></robot>'
+    scaled = _scale_lengths(urdf.format("").encode(), 0.5, "cart").decode()
+    assert scaled == urdf.format(' scale="0.5 0.5 0.5"')
+    sdf = "<sdf><mesh><uri>m.stl</uri>{}</mesh></sdf>"
+    scaled = _scale_lengths(sdf.format("").encode(), 0.5, "cart").decode()
+    assert scaled == sdf.format("<scale>0.5 0.5 0.5</scale>")

@@ -79,7 +79,7 @@ _KINDS = {
 # What is opened does not block, does not become the terminal, and is not a link swapped in.
 _FLAGS = os.O_RDONLY
 
-for _name in ("O_NONBLOCK", "O_NOCTTY", "O_NOFOLLOW", "O_CLOEXEC", "O_BINARY"):
+for _name in ("O_NONBLOCK", "O_NOCTTY", "O_NOFOLLOW", "O_BINARY"):
     _FLAGS |= getattr(os, _name, 0)
 
 _ELSEWHERE = "is not among the files of the model"
