@@ -35,6 +35,7 @@ EQUIVALENT = [
     ("one = replace(runs, samples=1", "1 -> 2", "two runs have the paths of one"),
     ("duration = round(max(_LENGTHS", "1.0 -> 1.01", "it is rounded to a tenth of a second"),
     ("'xyz'[axis]", "'xyz' -> 'xyzx'", "there are but three"),
+    ("inertia: float = 0.0", "0.0 -> 1.0", "a drum has no mass, which limits what moves with it"),
     ("_MARK = ", "'\\x00' -> '\\x00x'", "no text of a file has the one or the other"),
     (
         '"left" if runner.z > work.view.middle',

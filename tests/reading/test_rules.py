@@ -1,14 +1,17 @@
 """Rules of model files that are rarely broken: each is refused by name, with its line."""
 
+import math
 import re
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 import crawler2d as c2d
 from crawler2d.reading.files import LARGEST_MODEL
 from crawler2d.reading.parsing import parse_xml
+from crawler2d.reading.wheels import is_parallel
 from tests.kept import refusing
 from tests.reading.carts import (
     FILES,
@@ -193,3 +196,11 @@ def test_a_reading_shows_its_wheels_notes_and_warnings() -> None:
     lines = repr(reading).splitlines()
     assert lines[0] == reading.description
     assert re.fullmatch(r"  left chassis: x -?0\.\d{4} m, y 0\.\d{4} m, radius 0\.1250 m", lines[1])
+
+
+@pytest.mark.parametrize(("off", "along"), [(0.0, True), (0.0499, True), (0.0501, False)])
+def test_axes_are_parallel_up_to_a_twentieth_of_a_radian(off: float, along: bool) -> None:
+    left = np.array([0.0, 1.0, 0.0])
+    for sign in (1.0, -1.0):
+        other = sign * np.array([math.sin(off), math.cos(off), 0.0])
+        assert is_parallel(left, other) is along
