@@ -128,7 +128,8 @@ def run_pytest(arguments: list[str], seconds: float, told: int) -> int:
     for name in [name for name in sys.modules if name.partition(".")[0] == "tests"]:
         del sys.modules[name]  # which come from the copy, too
     os.setsid()
-    resource.setrlimit(resource.RLIMIT_CPU, (int(seconds), int(seconds)))
+    # At the harder limit the system sends SIGKILL, which does not tell why.
+    resource.setrlimit(resource.RLIMIT_CPU, (int(seconds), int(seconds) + 5))
     signal.alarm(4 * int(seconds))
     nowhere = os.open(os.devnull, os.O_RDWR)
     for stream in range(3):
