@@ -420,3 +420,11 @@ def test_a_reading_lists_twelve_wheels_and_counts_the_others(
     text = str(quietly(path, forward="+x"))
     assert text.count(" chassis: x ") == listed
     assert [int(each) for each in re.findall(r"and (\d+) more: see \.wheels", text)] == more
+
+
+def test_the_frame_of_a_chassis_is_halfway_between_its_end_axles(tmp_path: Path) -> None:
+    path = tmp_path / "cart.urdf"
+    path.write_text(urdf(pair("front", 0.4, z=0.06), pair("rear", -0.2, z=0.06)), encoding="utf-8")
+    frame = quietly(path).frame
+    assert frame.place == pytest.approx([0.1, 0.0, 0.06])
+    assert frame.turn == pytest.approx(np.eye(3))
