@@ -36,6 +36,7 @@ EQUIVALENT = [
     ("duration = round(max(_LENGTHS", "1.0 -> 1.01", "it is rounded to a tenth of a second"),
     ("'xyz'[axis]", "'xyz' -> 'xyzx'", "there are but three"),
     ("inertia: float = 0.0", "0.0 -> 1.0", "a drum has no mass, which limits what moves with it"),
+    ("lacking = (places[0]", "0 -> -1", "equal scenarios get their rows together"),
     ("_MARK = ", "'\\x00' -> '\\x00x'", "no text of a file has the one or the other"),
     (
         '"left" if runner.z > work.view.middle',
