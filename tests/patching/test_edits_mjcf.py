@@ -153,6 +153,13 @@ def test_a_mass_by_density_becomes_one_that_is_stated(tmp_path: Path) -> None:
         patch_file(two, on_chassis(two, 4))
 
 
+def test_a_mass_by_density_stays_unstated_while_a_wheel_only_moves(tmp_path: Path) -> None:
+    without = (MIDDLES + r"<inertial [^>]*>", r"\1")
+    reading = mjcf(tmp_path, without, (r'_middle" pos="0.0 ', '_middle" pos="0.02 '))
+    text = patch_file(reading, on_chassis(reading, 3)).text
+    assert text == reading.text.replace('_middle" pos="0.02 ', '_middle" pos="0 ')
+
+
 def test_wheels_of_mjcf_that_are_not_found_or_moved_are_named(tmp_path: Path) -> None:
     body = r'<body name="(left|right)_middle" pos="0.0 (\S+) 0">((?:.|\n)*?)</body>'
     in_frame = r'<frame pos="0.02 \2 0"><body name="\1_middle">\3</body></frame>'
