@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 import crawler2d as c2d
 from crawler2d.audits.candidates import pocket_between, pockets
 from crawler2d.audits.page.drawings import draw_pockets
+from crawler2d.audits.text import _pockets
 
 
 @pytest.mark.parametrize(("radius", "apart"), [(0.089, 0.5 / 7.0), (0.1, 0.12), (0.1, 0.199)])
@@ -107,3 +108,7 @@ def test_a_robot_without_neighbouring_wheels_has_no_pockets_to_draw() -> None:
     assert draw_pockets(c2d.robots.engineer(), ()) == (
         "<p>None: there are no neighbouring wheels.</p>"
     )
+
+
+def test_a_robot_without_neighbouring_wheels_has_no_pockets_in_words() -> None:
+    assert list(_pockets(())) == ["Pockets: none, because there are no neighbouring wheels"]
