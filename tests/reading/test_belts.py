@@ -180,6 +180,33 @@ def test_of_drums_beyond_the_belt_of_a_flipper_the_rearmost_is_named(tmp_path: P
     assert caught.value.value == "2 beyond the belt round the end drums"
 
 
+def test_of_a_robot_with_belts_and_wheels_on_flippers_a_note_is_about_its_belts(
+    tmp_path: Path,
+) -> None:
+    def part(name: str, place: str, parent: str, limit: str = "", shape: str = "") -> str:
+        axis = f"<axis><xyz>0 1 0</xyz>{limit}</axis>"
+        return f"""<link name="{name}"><pose>{place} 0 0 0</pose>{shape}</link>
+          <joint name="{name}_joint" type="revolute"><parent>{parent}</parent>
+          <child>{name}</child>{axis}</joint>"""
+
+    tyre = """<collision name="c"><pose>0 0 0 1.5707963267948966 0 0</pose><geometry><cylinder>
+      <radius>0.1</radius><length>0.05</length></cylinder></geometry></collision>"""
+    arms = ""
+    for side, sign in SIDES:
+        limit, y = "<limit><lower>-1</lower><upper>1</upper></limit>", 0.45 * sign
+        arms += part(f"{side}_arm", f"0.4 {y} 0", "hull", limit)
+        arms += part(f"{side}_root", f"0.4 {y} 0", f"{side}_arm", shape=tyre)
+        arms += part(f"{side}_tip", f"0.7 {y} 0", f"{side}_arm", shape=tyre)
+    text = tracked(((-0.4, 0.0, 0.1), (0.4, 0.0, 0.1)))
+    (tmp_path / "tank.sdf").write_text(text.replace("</model>", f"{arms}</model>"))
+    found = quietly(tmp_path / "tank.sdf")
+    assert found.robot.track == c2d.BeltTrack()
+    assert found.robot.flippers is not None
+    assert found.robot.flippers.track == c2d.LineOfWheels(2)
+    assert any(note.startswith("belts in gz-sim: ") for note in found.notes)
+    assert not any(note.startswith("motors in ") for note in found.notes)
+
+
 def test_a_belt_of_a_flipper_that_does_not_run_round_its_pivot_is_refused(tmp_path: Path) -> None:
     beside = on_flippers((0.1, 0.0, 0.1), (0.3, 0.0, 0.05))
     refused(tmp_path, beside, "must have a belt from the pivot to the tip", "tank.sdf")
