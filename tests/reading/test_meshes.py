@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from crawler2d.reading.meshes import _unit
 from tests.reading.carts import WHEELS, collision, left_out, read, urdf
 from tests.reading.mesh_files import BOX, BOXES, HIGH, HOSTILE, LOW, dae, obj
 
@@ -109,3 +110,10 @@ def test_an_existing_mesh_needs_the_extra(tmp_path: Path, monkeypatch: pytest.Mo
     with pytest.raises(ImportError, match=r"pip install 'crawler2d\[models\]'"):
         read(tmp_path, with_meshes("m.stl"))
     assert read(tmp_path, with_meshes("m.stl"), mesh="leave_out").robot.belly is None
+
+
+@pytest.mark.parametrize("meter", ["0", "-0.5", "nan"])
+def test_a_unit_of_collada_that_is_no_length_is_told(meter: str) -> None:
+    data = dae().replace(b'meter="1.0"', f'meter="{meter}"'.encode())
+    with pytest.raises(ValueError, match=rf"^its unit is {meter} m$"):
+        _unit(data)

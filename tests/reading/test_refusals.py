@@ -64,9 +64,11 @@ def test_wheels_on_slides_are_refused_as_suspension(tmp_path: Path) -> None:
     [
         ('type="slide" axis="0 0 1"', "slide", "carry no wheels: a side view has no suspension"),
         ('type="ball"', "ball", "be fixed or turn about an axis, to carry wheels"),
+        ('axis="0 0 1"', "hinge", "carry no wheels: a side view has no steering"),
+        ('axis="0 0 1" stiffness="0.1"', "hinge", "carry no wheels: a side view has no suspension"),
     ],
 )
-def test_wheels_on_a_slide_or_a_ball_of_mjcf_are_refused_by_its_kind(
+def test_wheels_on_joints_of_mjcf_that_a_side_view_lacks_are_refused_by_kind(
     tmp_path: Path, joint: str, kind: str, rule: str
 ) -> None:
     own = ' axis="0 1 0" range="-1.5 1.5"/>'

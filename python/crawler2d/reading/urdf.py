@@ -46,9 +46,7 @@ __all__ = ["read_urdf"]
 _WORLD = "world"  # A joint from an empty link of this name fixes a robot to the world.
 
 
-def read_urdf(
-    root: Element, meshes: Meshes, *, leave_out: bool = False, is_bullet: bool = False
-) -> Tree:
+def read_urdf(root: Element, meshes: Meshes, *, leave_out: bool, is_bullet: bool) -> Tree:
     """Read the robot of a URDF, in the frame of its root link.
 
     Parameters
