@@ -38,6 +38,7 @@ EQUIVALENT = [
     ("inertia: float = 0.0", "0.0 -> 1.0", "a drum has no mass, which limits what moves with it"),
     ("lacking = (places[0]", "0 -> -1", "equal scenarios get their rows together"),
     ("for name in rows[0]}", "0 -> 1", "there are two at least, with the same names"),
+    ('np.array(item["points"]', "1 -> 2", "NumPy finds the size that is any negative number"),
     ("_MARK = ", "'\\x00' -> '\\x00x'", "no text of a file has the one or the other"),
     (
         '"left" if runner.z > work.view.middle',
