@@ -136,10 +136,13 @@ def test_surfaces_that_mujoco_moves_are_drums(tmp_path: Path) -> None:
         for x in (-0.3, 0.3)
         for y in (-0.2, 0.2)
     )
-    text = f'<mujoco><worldbody><body name="hull"><freejoint/>{drums}</body></worldbody></mujoco>'
-    reading = read(tmp_path, text, "belt.xml")
-    assert reading.robot.track == c2d.BeltTrack()
-    assert reading.robot.outline.axle_distance == 0.6
+    crate = '<body name="crate" pos="2 0 0"><freejoint/><geom size="0.1"/></body>'
+    for others in ("", crate):  # of floating bodies, that with moved surfaces is the robot
+        hull = f'<body name="hull"><freejoint/>{drums}</body>'
+        text = f"<mujoco><worldbody>{others}{hull}</worldbody></mujoco>"
+        reading = read(tmp_path, text, "belt.xml")
+        assert reading.robot.track == c2d.BeltTrack()
+        assert reading.robot.outline.axle_distance == 0.6
 
 
 def test_links_that_something_outside_the_file_moves_are_named(tmp_path: Path) -> None:
