@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from crawler2d.reading.meshes import _unit
-from tests.reading.carts import WHEELS, collision, left_out, read, urdf
+from tests.reading.carts import FILES, WHEELS, collision, left_out, quietly, read, urdf
 from tests.reading.mesh_files import BOX, BOXES, HIGH, HOSTILE, LOW, dae, obj
 
 BELLY = ((LOW[0], LOW[2]), (HIGH[0], LOW[2]), HIGH[::2], (LOW[0], HIGH[2]))
@@ -117,3 +117,25 @@ def test_a_unit_of_collada_that_is_no_length_is_told(meter: str) -> None:
     data = dae().replace(b'meter="1.0"', f'meter="{meter}"'.encode())
     with pytest.raises(ValueError, match=rf"^its unit is {meter} m$"):
         _unit(data)
+
+
+@pytest.mark.parametrize(
+    ("weight", "is_told"),
+    [
+        *(("", True), ('mass="1"', True), ('mass="1" density="0"', True)),
+        *(('density="0"', False), ('mass="0"', False), ('mass="0" density="500"', False)),
+    ],
+)
+def test_a_missing_mesh_of_mjcf_lacks_mass_only_where_it_would_have_some(
+    tmp_path: Path, weight: str, is_told: bool
+) -> None:
+    """A mass that is stated counts in place of the density."""
+    pytest.importorskip("mujoco")
+    text = (FILES / "cart.xml").read_text(encoding="utf-8")
+    inertial = '<inertial pos="0 0 0" mass="16" diaginertia="0.125 0.5 0.5"/>'
+    geom = f'<geom type="mesh" mesh="lump" contype="0" conaffinity="0" {weight}/>'
+    asset = '<asset><mesh name="lump" file="lump.stl"/></asset><worldbody>'
+    path = tmp_path / "cart.xml"
+    path.write_text(text.replace(inertial, geom).replace("<worldbody>", asset), encoding="utf-8")
+    lost = [each for each in quietly(path).warnings if "lump.stl" in each]
+    assert ["its volume counts in MuJoCo" in each for each in lost] == [True] * is_told

@@ -417,12 +417,13 @@ def _load_assets(spec: Any, files: Files, file: str) -> Iterator[tuple[Any, Item
                 for geom in [g for g in spec.geoms if getattr(g, attribute) == item.name]:
                     body = geom.parent
                     counts = not body.explicitinertial and lowest <= geom.group <= highest
+                    weight = geom.density if math.isnan(geom.mass) else geom.mass
                     what = {
                         "name": geom.name,
                         "file": place,
                         "reason": reason_of(error),
                         "collides": bool(geom.contype or geom.conaffinity),
-                        "weighs": bool(counts and (geom.mass > 0.0 or geom.density > 0.0)),
+                        "weighs": bool(counts and weight > 0.0),
                         "line": _line(geom),
                     }
                     spec.delete(geom)
