@@ -3,7 +3,7 @@
 //! A step is symmetric: half of the weight's impulse, the constraints, the motion, the other half, the
 //! constraints again. Free flight is therefore exact, and a constant load causes only a second-order error.
 //! Before the motion, constraints close gaps and push out of penetration; after it they do not: this is the "soft step"
-//! of Erin Catto (Solver2D, 2024). The speed of a surface is found together with the contact forces, so that the force
+//! of Erin Catto's 2D solvers (2024). The speed of a surface is found together with the contact forces, so that the force
 //! limit of its motor acts on the net traction within the step.
 //!
 //! The equations: docs/physics.md, "A step".
