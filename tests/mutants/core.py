@@ -9,8 +9,8 @@ gives the faults that it reaches and its time; then a fault meets the tests that
 fails, or their times add up to `--seconds`: first those that are quick and have noticed others.
 Printed are the survivors, and how many were noticed of each group and of each room in it, with
 Wilson's interval at 95 %; those at which tests ran out of time before any failed count as noticed,
-and are counted beside it. The exit status is 1 if there are survivors. Tests of the Python package
-are not met.
+and are also counted separately. The exit status is 1 if there are survivors. Tests of the Python
+package are not met.
 """
 
 import argparse
@@ -58,18 +58,14 @@ class Test:
 
 @dataclass(frozen=True)
 class Verdict:
-    """What became of a fault."""
+    """Whether tests notice a fault."""
 
     fault: Fault
     tests: int
-    """So many have met it."""
+    """Number of tests that have met it."""
     is_noticed: bool
     is_late: bool = False
     """Noticed because tests ran out of time, before any failed."""
-
-    @property
-    def room(self) -> str:
-        return room_of(self.fault)
 
 
 def main() -> int:
@@ -108,7 +104,9 @@ def tried(name: str, size: int, seed: int, seconds: float) -> int:
                 print(f"{fault.name} (met {tests} of {len(reached[fault.number])})", flush=True)
     sizes = Counter(map(room_of, every))
     for room in rooms if len(rooms) > 1 else ():
-        print_score(f"  {room}", [each for each in verdicts if each.room == room], sizes[room])
+        print_score(
+            f"  {room}", [each for each in verdicts if room_of(each.fault) == room], sizes[room]
+        )
     print_score(name, verdicts, len(every))
     return sum(not verdict.is_noticed for verdict in verdicts)
 

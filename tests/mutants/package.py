@@ -271,7 +271,7 @@ def mutants_of(room: str) -> Iterator[Mutant]:
 def scored(name: str, found: dict[Mutant, str]) -> str:
     """Return how many mutants were noticed, with Wilson's interval, also without those argued.
 
-    Those that no test failed of, but that did not end, are counted among the noticed, and told.
+    Those at which tests ran out of time count as noticed, and are also counted separately.
     """
     # Not the package's own: no process may have imported that before a mutant is written.
     binomtest = importlib.import_module("scipy.stats").binomtest

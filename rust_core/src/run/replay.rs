@@ -89,6 +89,7 @@ impl Log {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::run::trials::tests::engineer;
 
     /// Drives on for 0.05 s, is told to go back, and is interrupted half way through 0.1 s more; notes all of that.
     fn drive(simulation: &mut Simulation, log: &mut Log) {
@@ -116,8 +117,7 @@ mod tests {
 
     #[test]
     fn a_run_that_is_made_again_ends_where_it_was_interrupted_with_the_same_bits() {
-        let text = include_str!("../../../tests/scenarios/engineer_belt_step.json");
-        let scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+        let scenario = engineer();
         let checked = ValidScenario::new(&scenario).expect("it is valid");
         let mut simulation = Simulation::new(&checked);
         let mut log = Log::default();

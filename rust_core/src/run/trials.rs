@@ -3,7 +3,7 @@
 //! docs/decisions/0012 explains why, docs/conventions.md defines the words.
 
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;
 
 use super::{Simulation, ValidScenario};
 use crate::diagnosis::{Change, Diagnosis, Trial, Wanted};

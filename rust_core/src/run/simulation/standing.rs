@@ -57,28 +57,16 @@ mod tests {
     use crate::jams::JamContact;
     use crate::limits::Cancel;
     use crate::run::find_jams;
-    use crate::scenario::{LineOfWheels, Scenario, Surface, Terrain, Track, Wheel};
+    use crate::run::trials::tests::wheels;
 
     /// The Engineer on four round wheels before a step, in which it can jam.
-    fn wheels() -> ValidScenario {
-        let text = include_str!("../../../../tests/scenarios/engineer_belt_step.json");
-        let mut scenario = Scenario::from_json(text).expect("the shared scenario is valid");
-        scenario.robot.track = Track::Line(LineOfWheels {
-            count: 4,
-            wheel_radius: None,
-            wheel: Wheel::Round,
-            as_track: true,
-        });
-        scenario.terrain = Terrain::Step {
-            height: 0.08,
-            surface: Surface::sharp(0.9),
-        };
-        ValidScenario::new(&scenario).expect("it is valid")
+    fn checked() -> ValidScenario {
+        ValidScenario::new(&wheels(4, 0.08)).expect("it is valid")
     }
 
     #[test]
     fn a_robot_that_is_put_somewhere_is_there_and_drives_at_the_command() {
-        let checked = wheels();
+        let checked = checked();
         let robot = Simulation::driven_at(&checked, Vector::new(-1.0, 0.3), 0.2);
         let now = robot.reading();
         assert!((now.position - Vector::new(-1.0, 0.3)).length() < 1e-15);
@@ -91,7 +79,7 @@ mod tests {
     /// less deep in any, and moves no farther than that takes, so in one it is no deeper.
     #[test]
     fn a_robot_is_pressed_onto_its_contacts_until_each_is_as_deep_as_it_carries() {
-        let checked = wheels();
+        let checked = checked();
         let jams = find_jams(&checked, &Cancel::default()).expect("there are few contacts");
         let rate = TAU * checked.scenario().solver.contact_frequency;
         let deepest = checked.scenario().gravity / (rate * rate);

@@ -6,15 +6,11 @@ use crate::dynamics::FlipperCommand;
 use crate::geometry::direction;
 use crate::observe::Outcome;
 use crate::run::ByHand;
+use crate::run::trials::tests::engineer;
 use crate::scenario::{
     ChainMechanism, End, Ends, Engine, ForceSupport, ForceTrack, GearWheel, LineOfWheels,
     SegmentalTrack, ShoeShape, Surface, Terrain, Track, Wheel,
 };
-
-fn engineer() -> Scenario {
-    let text = include_str!("../../../../tests/scenarios/engineer_belt_step.json");
-    Scenario::from_json(text).expect("the shared scenario is valid")
-}
 
 fn run_until(simulation: &mut Simulation, time: f64) {
     let left = time - simulation.time();

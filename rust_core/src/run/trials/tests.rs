@@ -7,13 +7,14 @@ use crate::scenario::{
     ForceSupport, ForceTrack, LineOfWheels, Scenario, Surface, Terrain, TorqueSharing, Track, Wheel,
 };
 
-fn engineer() -> Scenario {
+/// The Engineer on a belt, 0.1 m before a step.
+pub(in crate::run) fn engineer() -> Scenario {
     let text = include_str!("../../../../tests/scenarios/engineer_belt_step.json");
     Scenario::from_json(text).expect("the shared scenario is valid")
 }
 
 /// Round wheels on a line before a step [m].
-fn wheels(count: u32, height: f64) -> Scenario {
+pub(in crate::run) fn wheels(count: u32, height: f64) -> Scenario {
     let mut scenario = engineer();
     scenario.robot.track = Track::Line(LineOfWheels {
         count,

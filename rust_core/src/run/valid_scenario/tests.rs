@@ -2,15 +2,11 @@
 
 use super::*;
 use crate::run::Simulation;
+use crate::run::trials::tests::engineer;
 use crate::scenario::{Surface, Terrain};
 
 mod rules;
 mod warnings;
-
-fn engineer() -> Scenario {
-    let text = include_str!("../../../../tests/scenarios/engineer_belt_step.json");
-    Scenario::from_json(text).expect("the shared scenario is valid")
-}
 
 fn varied<'a>(
     first: &ValidScenario,
