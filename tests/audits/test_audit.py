@@ -205,6 +205,16 @@ def test_an_error_of_lint_stands_above_the_verdict() -> None:
     assert said in found.to_html()
 
 
+def test_a_warning_of_a_later_draw_comes_after_the_runs(capsys: pytest.CaptureFixture[str]) -> None:
+    """The friction of the second sample is above 3, which is usual at most."""
+    few: Any = {"samples": 3, "repeats": 1, "seed": 0, "duration": 0.1, "repair": False}
+    found = c2d.audit(SEIZING, STEP, **few, unknown={"terrain.friction": c2d.uniform(0.5, 6.0)})
+    (finding,) = found.lint
+    assert finding.message.startswith("terrain.friction is usually at most 3")
+    shown = capsys.readouterr().err.split("step of 75 mm", maxsplit=1)[1]
+    assert "Lint, warnings during the runs\n  warning, other: terrain.friction is usually" in shown
+
+
 def test_without_an_error_of_lint_nothing_stands_above_the_verdict(found: c2d.Audit) -> None:
     assert "Lint has errors" not in found.summary
 

@@ -210,6 +210,11 @@ def test_the_command_that_a_page_names_is_the_same_call(how: Any) -> None:
     }
 
 
+def test_the_command_of_a_quick_audit_is_quick() -> None:
+    assert "--quick" in str(command_of(dataclasses.replace(CALL, quick=True), "a.sdf")).split()
+    assert "--quick" not in str(command_of(CALL, "a.sdf")).split()
+
+
 def test_a_call_with_arguments_that_no_option_has_is_no_command() -> None:
     assert command_of(CALL, "a.sdf") is not None
     assert command_of(dataclasses.replace(CALL, own=("vary",)), "a.sdf") is None

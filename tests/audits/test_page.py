@@ -21,6 +21,7 @@ from crawler2d.audits.candidates import pockets
 from crawler2d.audits.page import audit_page, simulate_replays
 from crawler2d.audits.page.chart import chart_section
 from crawler2d.audits.page.drawings import draw_pockets, draw_robot
+from crawler2d.audits.page.sections import repair_section
 from crawler2d.audits.repairs import Repair
 from crawler2d.pictures.page.recording import recording
 from tests.audits.seizing import QUIET, SEIZING, STEP, seizing_file
@@ -274,6 +275,11 @@ def test_repairs_are_those_of_the_audit(found: c2d.Audit, page: Page) -> None:
     labels = [str(each["aria-label"]) for each, _ in page.all("svg", role="img")]
     pictures = [label for label in labels if not label.startswith("where ")]
     assert pictures[:3] == [f"the robot: {each.description}" for each in found.repairs]
+
+
+def test_without_repairs_the_page_says_whether_any_were_needed(found: c2d.Audit) -> None:
+    asked_for_none = dataclasses.replace(found, repaired=None)
+    assert "<p>No repairs were searched for.</p>" in repair_section(asked_for_none, {})
 
 
 def test_where_it_can_jam_is_drawn_for_the_model_and_its_best_repair(

@@ -41,6 +41,30 @@ EQUIVALENT = [
     ('np.array(item["points"]', "1 -> 2", "NumPy finds the size that is any negative number"),
     ("_MARK = ", "'\\x00' -> '\\x00x'", "no text of a file has the one or the other"),
     (
+        "np.argsort(distances, kind",
+        "'stable' -> 'stablex'",
+        "NumPy looks at the first letter alone",
+    ),
+    ("counts.most_common(1)[0]", "1 -> 2", "the first of them is taken"),
+    ("is_line = bool(off", "off <= _EVEN -> off < _EVEN", "no distance is exactly the limit"),
+    (
+        "np.linalg.norm(np.cross(lateral, axis)) <= _SNAP",
+        "np.linalg.norm(np.cross(lateral, axis)) <= _SNAP"
+        " -> np.linalg.norm(np.cross(lateral, axis)) < _SNAP",
+        "no angle is exactly the limit",
+    ),
+    (
+        "for other in distinct",
+        "math.hypot(*point - other) > near -> math.hypot(*point - other) >= near",
+        "no distance is exactly the limit",
+    ),
+    (
+        'if shape.kind != "hull" or len(shape.points)',
+        "shape.kind != 'hull' or len(shape.points) > _MOST_CORNERS"
+        " -> shape.kind != 'hull' and len(shape.points) > _MOST_CORNERS",
+        "other shapes have no corners, and so many are never four",
+    ),
+    (
         '"left" if runner.z > work.view.middle',
         "runner.z > work.view.middle -> runner.z >= work.view.middle",
         "wheels in the middle are refused before",

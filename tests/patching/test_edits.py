@@ -381,14 +381,23 @@ def test_a_limit_that_is_none_stays_none(none: str, tmp_path: Path) -> None:
     assert found["effort"] == {(SIZE,)}
 
 
-def test_wheels_without_a_mass_cannot_share_it(tmp_path: Path) -> None:
+def without_a_mass(folder: Path) -> c2d.Reading:
+    """A cart with a wheel of the usual mass of SDF, 1 kg, like the others."""
     text = re.sub(
         r'(<link name="left_middle">\s*<pose>[^<]*</pose>\s*<inertial>)<mass>1</mass>',
         r"\1",
         CART["sdf"],
     )
     assert text != CART["sdf"]
-    reading = read(tmp_path, text, "sdf")
+    return read(folder, text, "sdf")
+
+
+def test_wheels_that_keep_their_mass_need_not_state_it(tmp_path: Path) -> None:
+    assert "<radius>0.1</radius>" in resized(without_a_mass(tmp_path), 0.1)
+
+
+def test_wheels_without_a_mass_cannot_share_it(tmp_path: Path) -> None:
+    reading = without_a_mass(tmp_path)
     with refusing(SAID) as caught:
         patch_file(reading, on_chassis(reading, 4))
     assert caught.value.path == "link[left_middle]"

@@ -346,6 +346,20 @@ def test_a_mesh_is_read_as_its_hull_where_its_file_is_there(tmp_path: Path) -> N
     assert reading.robot.belly == ((-0.1, 0.0), (0.1, 0.0), (0.1, 0.05), (-0.1, 0.05))
 
 
+def test_a_mesh_stands_on_the_side_of_its_corners_and_not_of_its_frame(tmp_path: Path) -> None:
+    rim = [(math.cos(a / 32 * math.tau), math.sin(a / 32 * math.tau)) for a in range(32)]
+    for side, middle in (("left", 0.15), ("right", -0.15)):
+        corners = [(0.08 * x, middle + y, 0.08 * z) for x, z in rim for y in (-0.02, 0.02)]
+        (tmp_path / f"{side}.obj").write_text("\n".join(f"v {x} {y} {z}" for x, y, z in corners))
+    wheels = [
+        wheel(f"{side}_{end}", f"{x} 0 0", geometry=f'<mesh filename="{side}.obj"/>', origin="")
+        for end, x in (("front", 0.2), ("rear", -0.2))
+        for side in ("left", "right")
+    ]
+    reading = read(tmp_path, urdf(*wheels), mesh="hull")
+    assert reading.robot.gauge == pytest.approx(0.3)
+
+
 def test_a_round_mesh_is_a_wheel(tmp_path: Path) -> None:
     rim = [(math.cos(a / 32 * math.tau), math.sin(a / 32 * math.tau)) for a in range(33)]
     loop = "facet normal 0 0 0\nouter loop\n{}endloop\nendfacet\n"

@@ -129,6 +129,18 @@ def test_expressions_just_below_a_limit_are_evaluated(text: str) -> None:
     evaluate(text, {**NAMES, **known()})
 
 
+def test_a_value_has_a_hundred_thousand_parts_at_most_and_counts_as_one() -> None:
+    assert len(evaluate("l", {"l": [1] * 99_999})) == 99_999
+    with pytest.raises(NotAllowed, match="at most 100000 parts"):
+        evaluate("l", {"l": [1] * 100_000})
+
+
+@pytest.mark.parametrize("name", ["factorial", "comb", "perm", "prod"])
+def test_a_function_whose_values_grow_without_bound_has_no_name(name: str) -> None:
+    with pytest.raises(NameError, match=f"name '{name}' is not defined"):
+        evaluate(f"{name}([2, 3])", NAMES)
+
+
 def test_numbers_that_are_not_real_and_calls_of_no_function_are_errors() -> None:
     with pytest.raises(ValueError, match=r"^-2.5 \*\* 0.5 is not a real number$"):
         evaluate("x ** 0.5", known())

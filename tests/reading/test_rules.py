@@ -87,6 +87,16 @@ def test_a_quaternion_turns_a_link_as_angles_do(tmp_path: Path) -> None:
     )
 
 
+@pytest.mark.parametrize(("norm", "is_read"), [(1.005e-6, True), (0.995e-6, False)])
+def test_a_quaternion_is_0_below_a_millionth(norm: float, is_read: bool, tmp_path: Path) -> None:
+    pose = f'<pose rotation_format="quat_xyzw">-0.25 0.25 0 0 0 0 {norm}</pose>'
+    text = changed(SDF, POSE, pose)
+    if is_read:
+        read(tmp_path, text, "cart.sdf")
+    else:
+        refused(tmp_path, text, "must have a quaternion that is not 0", "cart.sdf")
+
+
 def test_too_few_numbers_or_a_missing_attribute_are_refused(
     tmp_path: Path,
 ) -> None:

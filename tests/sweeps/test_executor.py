@@ -10,6 +10,7 @@ from concurrent.futures import (
     ProcessPoolExecutor,
     ThreadPoolExecutor,
 )
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -132,6 +133,16 @@ def test_workers_lost_for_good_leave_what_was_finished_in_the_store(
     assert len(list(stored_rows(store))) == 12
     with ThreadPoolExecutor(2) as executor:
         xr.testing.assert_identical(plain, swept(executor, store=store))
+
+
+def test_an_executor_has_failed_when_so_many_runs_in_a_row_have_no_result(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(collect, "_GIVEN_UP", 10)
+    lost = partial(quiet, BASE, {}, executor=Unreliable(losses=10**6), on_error="record")
+    assert set(lost(repeats=9)["outcome"].to_numpy().flat) == {"failed"}
+    with pytest.raises(c2d.errors.InternalError, match="executor failed"):
+        lost(repeats=10)
 
 
 def kill_itself(*_: Any) -> Any:

@@ -29,7 +29,7 @@ impl Simulation {
         robot
     }
 
-    /// The same in a jam, pressed onto its contacts so deep that they carry it at rest. If they only touched, rounding
+    /// The same in a jam, pressed onto its contacts at least so deep that they carry it at rest. If they only touched, rounding
     /// would decide which of them carries first, and some robots could slip out of the jam.
     pub(in crate::run) fn pressed(mut self, jam: &Jam) -> Self {
         let omega = TAU * self.scenario.solver.contact_frequency;
