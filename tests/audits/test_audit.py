@@ -417,6 +417,14 @@ def test_a_belt_is_no_count_of_wheels(found: c2d.Audit) -> None:
     assert any(each.kind == "belt" for each in found.repairs)
 
 
+def test_a_repair_is_as_good_as_on_the_obstacle_that_it_clears_least(found: c2d.Audit) -> None:
+    all_runs = np.ones((20, 1), bool)
+    every_other = np.arange(20)[:, None] % 2 == 0
+    often, seldom = (proportion_of(cleared, all_runs) for cleared in (all_runs, every_other))
+    repair = replace(found.repairs[0], cleared_given_belt={"gap": often, "step": seldom})
+    assert worst_rates(repair)[0] == seldom
+
+
 def test_a_repair_without_belt_runs_to_compare_with_says_so(found: c2d.Audit) -> None:
     repair = found.repairs[0]
     none = proportion_of(np.zeros((20, 1), bool), np.zeros((20, 1), bool))

@@ -12,7 +12,7 @@ from crawler2d.audits import lint as module
 from crawler2d.audits.lint import SEVERITIES, Finding
 from tests.audits.seizing import SAID
 from tests.kept import check_said
-from tests.reading.carts import FILES, TENSOR, WHEEL_TENSOR, WHEELS, pair, quietly, read, urdf
+from tests.reading.carts import FILES, TENSOR, WHEEL_TENSOR, WHEELS, link, pair, quietly, read, urdf
 
 ROBOT = c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(4))
 BLOCK = '<transmission name="t"><joint name="{name}_joint"/></transmission>'
@@ -302,6 +302,13 @@ def test_wheels_without_mass_are_found(tmp_path: Path) -> None:
     assert found.severity == "error"
     assert "4 wheels have no mass" in found.message
     assert of_text(tmp_path, urdf(WHEELS), "massless") == []
+
+
+def test_the_mass_of_a_wheel_may_be_that_of_a_link_fixed_to_it(tmp_path: Path) -> None:
+    wheels = re.sub(r"<inertial>.*?</inertial>", "", WHEELS, flags=re.DOTALL)
+    names = [f"{side}_{end}" for side in ("left", "right") for end in ("front", "rear")]
+    hubs = "".join(link(f"{each}_hub", 'type="fixed">', parent=each) for each in names)
+    assert of_text(tmp_path, urdf(wheels, hubs), "massless") == []
 
 
 def test_placeholder_inertias_are_found(tmp_path: Path) -> None:
