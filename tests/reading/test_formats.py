@@ -436,7 +436,7 @@ def test_a_reading_lists_twelve_wheels_and_counts_the_others(
     path.write_text(urdf(*(pair(f"w{k}", x) for k, x in enumerate(places))), encoding="utf-8")
     text = str(quietly(path, forward="+x"))
     assert text.count(" chassis: x ") == listed
-    assert [int(each) for each in re.findall(r"and (\d+) more: see \.wheels", text)] == more
+    assert [int(each) for each in re.findall(r"and (\d+) more: see \.wheels\n", text)] == more
 
 
 def test_the_frame_of_a_chassis_is_halfway_between_its_end_axles(tmp_path: Path) -> None:

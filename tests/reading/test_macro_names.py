@@ -53,6 +53,14 @@ def test_an_element_of_urdf_is_no_call_of_a_macro_of_its_name(tmp_path: Path) ->
     assert expanded(tmp_path, *macros) == (text, ())
 
 
+def test_a_list_in_a_text_is_split_at_commas_semicolons_and_spaces(tmp_path: Path) -> None:
+    path = tmp_path / "cart.xacro"
+    names = """<xacro:property name="ends" value="${xacro.tokenize('a,b c;;d')}"/>
+      <link name="${ends[0]}_${ends[1]}_${ends[2]}_${ends[3]}_${len(ends)}"/>"""
+    path.write_text(urdf(names, WHEELS).replace('<robot name="cart">', XACRO))
+    assert 'name="a_b_c_d_4"' in quietly(path).text
+
+
 def test_another_element_is_a_call_of_a_macro_of_its_name(tmp_path: Path) -> None:
     element = ElementTree.fromstring('<ball radius="0.01"><a/></ball>')
     call = ElementTree.tostring(element, encoding="unicode")

@@ -114,6 +114,14 @@ def test_packages_beside_that_of_the_model_need_no_repository(tmp_path: Path) ->
     assert has_belly(own / "urdf")
 
 
+def test_packages_beside_the_outermost_that_holds_the_model_are_found(tmp_path: Path) -> None:
+    inner = tmp_path / "ws" / "robots" / "sim" / "worlds" / "cart"
+    for folder in (tmp_path / "ws" / "robots", inner):
+        package(folder, text="<package><name>cart</name></package>")
+    package(tmp_path / "ws" / "parts")
+    assert has_belly(inner)
+
+
 def test_a_package_outside_the_repository_is_not_found(clone: Path, tmp_path: Path) -> None:
     package(tmp_path / "parts")
     (clone / "linked").symlink_to(tmp_path / "parts")

@@ -216,6 +216,12 @@ def test_a_field_that_a_study_doubles_is_doubled_at_every_level() -> None:
     assert planner.runs(world, 0, 2).drawn["drive.speed"].tolist() == pytest.approx([0.08, 0.8])
 
 
+def test_the_numbers_of_a_path_are_those_of_its_letters_and_the_seed() -> None:
+    """Runs that a store has from another version are found by them."""
+    expected = np.random.default_rng((7, *b"drive.speed")).random(4)
+    assert uniform_numbers("drive.speed", 7, 4).tolist() == expected.tolist()
+
+
 @pytest.mark.parametrize("path", ["start.approach", "terrain.seed", "a"])
 def test_more_repeats_go_on_with_the_same_numbers(path: str) -> None:
     whole = uniform_numbers(path, 7, 1000)
