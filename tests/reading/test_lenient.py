@@ -151,6 +151,7 @@ def test_a_joint_that_carries_nothing_is_fixed_if_it_is_wrong(
     [
         'type="fixed"><axis xyz="0 0 0"/>',
         'type="revolute"><axis xyz="0 0 0"/><limit lower="0" upper="0" effort="1" velocity="1"/>',
+        'type="revolute"><axis xyz="0 0 0"/><limit effort="1" velocity="1"/>',  # from 0 to 0
         'type="floating">',
         'type="planar">',
         'type="screw">',
