@@ -45,6 +45,8 @@ EQUIVALENT = [
         "'stable' -> 'stablex'",
         "NumPy looks at the first letter alone",
     ),
+    ('message = {"type": failing', "0 -> -1", "all are of one rule"),
+    ("runs[repeat],) = whole", "(None, :) -> (None,)", "the other dimension is whole in both"),
     ("counts.most_common(1)[0]", "1 -> 2", "the first of them is taken"),
     ("is_line = bool(off", "off <= _EVEN -> off < _EVEN", "no distance is exactly the limit"),
     (

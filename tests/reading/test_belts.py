@@ -69,6 +69,13 @@ def test_a_drum_that_does_not_bend_the_belt_is_none_of_its_discs(
         assert outline(tmp_path, *drums) == bare
 
 
+def test_a_drum_that_lies_lowest_by_rounding_alone_does_not_bend_the_belt(tmp_path: Path) -> None:
+    """It is found first, and then lies on the run between its neighbours."""
+    ends, neighbours = ((-0.5, 0.15, 0.1), (0.5, 0.15, 0.1)), ((-0.2, 0.0, 0.1), (0.2, 0.0, 0.1))
+    bare = outline(tmp_path, *ends, *neighbours)
+    assert outline(tmp_path, *ends, *neighbours, (0.0, -0.000004, 0.1)) == bare
+
+
 def test_a_road_wheel_1_mm_below_the_others_bends_the_belt(tmp_path: Path) -> None:
     found = outline(tmp_path, (-0.4, 0.0, 0.1), (0.0, -0.001, 0.1), (0.4, 0.0, 0.1))
     assert len(found.discs) == 3

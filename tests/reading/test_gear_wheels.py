@@ -165,23 +165,35 @@ def test_a_wheel_with_grousers_turned_against_that_of_the_other_side_gets_a_warn
     assert any("start up to 11.5 degrees off" in warning for warning in reading.warnings)
 
 
-def test_hulls_that_taper_are_grousers_with_their_thickness_at_the_root(tmp_path: Path) -> None:
-    """Corners 12 mm apart at 65 mm and 8 mm apart at 80 mm: on the root circle, 10.7 mm."""
-    corners = [(0.004, 0.08), (0.006, 0.065)]
+def grousers_of(folder: Path, *corners: tuple[float, float]) -> c2d.GearWheel:
+    """A wheel with grousers of a mesh that has these corners [m] on both sides of its middle."""
     lines = [f"v {s * x} {y} {z}" for x, z in corners for s in (-1, 1) for y in (-0.02, 0.02)]
-    (tmp_path / "grouser.obj").write_text("\n".join(lines))
+    (folder / "grouser.obj").write_text("\n".join(lines))
     turned = "".join(
         collision('<mesh filename="grouser.obj"/>', f'<origin rpy="0 {k * ANGLE} 0"/>')
         for k in range(COUNT)
     )
     parts = "".join(gear(name, x, turns=()) for name, x in (("front", 0.2), ("rear", -0.2)))
     end = f"<geometry>{ROUND.format(radius=ROOT)}</geometry></collision>"
-    wheel = wheel_of(tmp_path, parts.replace(end, end + turned), mesh="hull")
+    return wheel_of(folder, parts.replace(end, end + turned), mesh="hull")
+
+
+def test_hulls_that_taper_are_grousers_with_their_thickness_at_the_root(tmp_path: Path) -> None:
+    """Corners 12 mm apart at 65 mm and 8 mm apart at 80 mm: on the root circle, 10.7 mm."""
+    wheel = grousers_of(tmp_path, (0.004, 0.08), (0.006, 0.065))
     assert wheel.tip_thickness == pytest.approx(0.008)
     height = math.sqrt(ROOT**2 - 0.0053**2)  # the flank, to a hundredth of a millimetre
     at_root = 0.008 + 0.004 * (0.08 - height) / 0.015
     assert wheel.base_thickness == pytest.approx(at_root, abs=1e-5)
     assert wheel.grouser_height == pytest.approx(math.hypot(0.08, 0.004) - ROOT)
+
+
+@pytest.mark.parametrize(("more", "is_parallel"), [(2e-8, True), (2e-6, False)])
+def test_flanks_that_differ_by_less_than_rounding_are_parallel(
+    more: float, is_parallel: bool, tmp_path: Path
+) -> None:
+    wheel = grousers_of(tmp_path, (0.005, 0.08), (0.005 + more, 0.065))
+    assert (wheel.base_thickness is None) is is_parallel
 
 
 def test_the_lines_of_a_gear_wheel_are_those_of_its_grousers_too(tmp_path: Path) -> None:

@@ -61,6 +61,14 @@ def test_a_list_in_a_text_is_split_at_commas_semicolons_and_spaces(tmp_path: Pat
     assert 'name="a_b_c_d_4"' in quietly(path).text
 
 
+def test_messages_of_a_file_are_no_text(tmp_path: Path) -> None:
+    path = tmp_path / "cart.xacro"
+    calls = ("message('a')", "warning('a')", "error('a')", "print_location()")
+    names = "".join(f"${{xacro.{call}}}" for call in calls)
+    path.write_text(urdf(f'<link name="a{names}b"/>', WHEELS).replace('<robot name="cart">', XACRO))
+    assert '<link name="ab"/>' in quietly(path).text
+
+
 def test_another_element_is_a_call_of_a_macro_of_its_name(tmp_path: Path) -> None:
     element = ElementTree.fromstring('<ball radius="0.01"><a/></ball>')
     call = ElementTree.tostring(element, encoding="unicode")

@@ -75,10 +75,20 @@ def test_xacro_finds_packages_as_meshes_are_found(clone: Path, word: str) -> Non
 
 
 LAYOUTS = [
-    (variable, pattern.format(name="parts"))
-    for variable, patterns in VARIABLES.items()
-    for pattern in patterns or ("any/where/called_otherwise",)
+    ("AMENT_PREFIX_PATH", "share/parts"),
+    ("COLCON_PREFIX_PATH", "share/parts"),
+    ("COLCON_PREFIX_PATH", "parts/share/parts"),
+    ("GZ_SIM_RESOURCE_PATH", "parts"),
+    ("IGN_GAZEBO_RESOURCE_PATH", "parts"),
+    ("GAZEBO_MODEL_PATH", "parts"),
+    ("SDF_PATH", "parts"),
+    ("ROS_PACKAGE_PATH", "any/where/called_otherwise"),
+    ("ROS_ROOT", "any/where/called_otherwise"),
 ]
+
+
+def test_every_variable_has_a_layout_here() -> None:
+    assert {variable for variable, _ in LAYOUTS} == VARIABLES.keys()
 
 
 @pytest.mark.parametrize(("variable", "inside"), LAYOUTS)

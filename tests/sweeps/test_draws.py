@@ -216,6 +216,14 @@ def test_a_field_that_a_study_doubles_is_doubled_at_every_level() -> None:
     assert planner.runs(world, 0, 2).drawn["drive.speed"].tolist() == pytest.approx([0.08, 0.8])
 
 
+def test_as_many_runs_are_planned_as_repeats_are_asked_for() -> None:
+    """Also if nothing varies, so that no numbers are drawn."""
+    base = c2d.Scenario(c2d.robots.engineer(), c2d.terrains.step(0.05))
+    planner = Planner(Variation({}), Variation({}), 0)
+    (world,) = planner.worlds(base, [])
+    assert len(planner.runs(world, 2, 5).checked) == 3
+
+
 def test_the_numbers_of_a_path_are_those_of_its_letters_and_the_seed() -> None:
     """Runs that a store has from another version are found by them."""
     expected = np.random.default_rng((7, *b"drive.speed")).random(4)
@@ -351,7 +359,7 @@ def test_the_default_draws_valid_scenarios_of_every_variant(name: str) -> None:
         *(
             (
                 {"terrain.height": distribution},
-                "vary['terrain.height'] must not replace the values of `over`, got"
+                "vary['terrain.height'] must not replace the values of `over` or `unknown`, got"
                 f" {distribution}; scaled(low, high) and shifted(low, high) vary about them",
             )
             for distribution in (uniform(0, 1), uniform_int(0, 1))
