@@ -50,13 +50,12 @@ pub(crate) fn examine(scene: &Scene, stance: &Stance, times: &StopTimes) -> Diag
     let intrusion = jam.or_else(|| most_loaded(&mut inside.iter()));
     let facts = scene.facts(stance, intrusion.as_ref());
 
-    let range = stance.range[0].max(stance.range[1]);
-    let range = range.max(stance.range[2] * scene.half_length);
-    let stationary = range <= criteria.stationary_distance;
+    let farthest = |[x, y, angle]: [f64; 3]| x.max(y).max(angle * scene.half_length);
+    let stationary = farthest(stance.range) <= criteria.stationary_distance;
     let tolerance = tolerance(criteria, stationary);
     let statics = scene.statics(stance);
     let imbalance = statics.as_ref().and_then(Statics::imbalance);
-    let symptom = if range > criteria.cycling_distance {
+    let symptom = if farthest(stance.swing) > criteria.cycling_distance {
         Outcome::Cycling
     } else if facts.belly_share >= criteria.belly_load {
         Outcome::HungUp

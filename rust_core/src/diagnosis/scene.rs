@@ -132,10 +132,10 @@ impl Scene<'_> {
         let bears = |k: &usize| self.model.push_drive() == Some(*k) || on_drive(*k);
         let bearing = self.model.driven().filter(bears);
         let motors: Vec<&DriveMean> = bearing.filter_map(|k| stance.drives.get(k)).collect();
-        let stalled = motors
-            .iter()
-            .filter(|d| !self.is_moving(d.speed) && self.is_at_limit(d))
-            .count();
+        // The load may also turn it backwards.
+        let is_overcome = |d: &&&DriveMean| !self.is_moving(d.speed) || d.speed * d.force < 0.0;
+        let at_limit = motors.iter().filter(|d| self.is_at_limit(d));
+        let stalled = at_limit.filter(is_overcome).count();
         Facts {
             belly_share: sum(&|c| on(c.kind == BodyKind::Belly, lift(c))) / all_lift,
             sliding_share: sum(&|c| on(c.slides, c.normal_force)) / normal,

@@ -88,6 +88,7 @@ impl Stage {
             position: Vector::new(0.0, POST + RADIUS - DEPTH),
             angle: 0.0,
             range: [0.0; 3],
+            swing: [0.0; 3],
             bearings: places.map(bearing).to_vec(),
             drives: vec![DriveMean::default()],
         }
@@ -142,21 +143,23 @@ fn a_diagnosis_is_of_the_most_loaded_ground_and_of_equals_the_left() {
 }
 
 #[test]
-fn a_stop_is_stationary_up_to_the_distance_and_cycles_beyond_its_own() {
+fn a_stop_is_stationary_up_to_the_distance_and_cycles_there_and_back_beyond_its_own() {
     let mut stage = Stage::new();
     let criteria = &mut stage.scenario.criteria;
     (criteria.stationary_distance, criteria.cycling_distance) = (0.0625, 0.125);
     for (axis, lever) in [(0, 1.0), (1, 1.0), (2, HALF)] {
-        let found = |range: f64| {
+        let found = |range: f64, swing: f64| {
             let mut stance = stage.stance([0.5, 0.5]);
-            stance.range[axis] = range / lever;
+            (stance.range[axis], stance.swing[axis]) = (range / lever, swing / lever);
             let found = stage.examine(&stance);
             (found.stationary, found.outcome)
         };
-        assert_eq!(found(0.0625), (true, Outcome::Slipping));
-        assert_eq!(found(0.07), (false, Outcome::Slipping));
-        assert_eq!(found(0.125), (false, Outcome::Slipping));
-        assert_eq!(found(0.13), (false, Outcome::Cycling));
+        assert_eq!(found(0.0625, 0.0625), (true, Outcome::Slipping));
+        assert_eq!(found(0.07, 0.07), (false, Outcome::Slipping));
+        assert_eq!(found(0.125, 0.125), (false, Outcome::Slipping));
+        assert_eq!(found(0.13, 0.13), (false, Outcome::Cycling));
+        // Far one way, and back a little.
+        assert_eq!(found(1.0, 0.125), (false, Outcome::Slipping));
     }
 }
 
@@ -305,9 +308,10 @@ fn ground_under_the_sprocket_of_an_arm_does_not_turn_it() {
     }
 }
 
-/// Both tracks are one drive here. A motor is stalled if it stands, up to the creep of sticking contacts, at its limit.
+/// Both tracks are one drive here. A motor is stalled if it stands at its limit, up to the creep of sticking contacts, or
+/// is turned back.
 #[test]
-fn a_motor_that_stands_at_its_limit_is_stalled() {
+fn a_motor_that_stands_or_is_turned_back_at_its_limit_is_stalled() {
     let stage = Stage::new();
     let (criteria, motor) = (&stage.scenario.criteria, &stage.model.motor);
     let limit = criteria.torque_limit * motor.force;
@@ -317,7 +321,10 @@ fn a_motor_that_stands_at_its_limit_is_stalled() {
         (-limit, creep, true),
         (0.99 * limit, 0.0, false),
         (limit, 1.01 * creep, false),
-        (limit, -1.01 * creep, false),
+        (limit, -1.01 * creep, true),
+        (-limit, 1.01 * creep, true),
+        (-limit, -1.01 * creep, false),
+        (0.99 * limit, -1.01 * creep, false),
     ] {
         let mut stance = stage.stance([0.5, 0.5]);
         stance.drives = vec![DriveMean { force, speed }];

@@ -36,6 +36,9 @@ struct WindowSums {
     place: [f64; 3],
     low: [f64; 3],
     high: [f64; 3],
+    /// The most by which a coordinate has risen above an earlier value, and fallen below one.
+    rise: [f64; 3],
+    fall: [f64; 3],
 }
 
 /// Sums of one contact.
@@ -78,6 +81,8 @@ pub(crate) struct Stance {
     pub angle: f64,
     /// Range of motion of the chassis frame in x [m], y [m] and angle [rad].
     pub range: [f64; 3],
+    /// The same there and back again: 0 while it moves one way.
+    pub swing: [f64; 3],
     /// Contacts that carry or could carry a load.
     pub bearings: Vec<Bearing>,
     /// One for each drive.
@@ -117,7 +122,7 @@ impl Signals {
     /// Whether they can come from a robot on these lanes.
     pub(crate) fn fits(&self, model: &Model, lanes: &[Profile]) -> bool {
         [&self.older, &self.newer].into_iter().all(|block| {
-            let numbers = [block.place, block.low, block.high].concat();
+            let numbers = [block.place, block.low, block.high, block.rise, block.fall].concat();
             block.drives.len() <= model.drives
                 && block.start.is_finite()
                 && (0.0..1e15).contains(&block.time)
@@ -136,6 +141,7 @@ impl Signals {
             position: Vector::new(sum.place[0], sum.place[1]) * share,
             angle: sum.place[2] * share,
             range: std::array::from_fn(|i| sum.high[i] - sum.low[i]),
+            swing: std::array::from_fn(|i| sum.rise[i].min(sum.fall[i])),
             bearings: sum.contacts.iter().map(|c| c.mean(share)).collect(),
             drives: sum
                 .drives
@@ -171,6 +177,8 @@ impl WindowSums {
             self.place[i] += value * dt;
             self.low[i] = self.low[i].min(value);
             self.high[i] = self.high[i].max(value);
+            self.rise[i] = self.rise[i].max(value - self.low[i]);
+            self.fall[i] = self.fall[i].max(self.high[i] - value);
         }
         for (k, (drive, speed)) in drives.enumerate() {
             if k == self.drives.len() {
@@ -206,6 +214,9 @@ impl WindowSums {
         self.time += later.time;
         for i in 0..3 {
             self.place[i] += later.place[i];
+            let (rise, fall) = (later.high[i] - self.low[i], self.high[i] - later.low[i]);
+            self.rise[i] = self.rise[i].max(later.rise[i]).max(rise);
+            self.fall[i] = self.fall[i].max(later.fall[i]).max(fall);
             self.low[i] = self.low[i].min(later.low[i]);
             self.high[i] = self.high[i].max(later.high[i]);
         }

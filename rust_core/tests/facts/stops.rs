@@ -227,6 +227,22 @@ fn weak_motors_stall_until_they_have_more_torque() {
     assert_eq!(freed.collect::<Vec<_>>(), ["torque x 2"]);
 }
 
+/// A slope of 17 degrees, on which it takes a friction of 0.31 and 2 N m for each track to stand.
+#[test]
+fn what_only_moves_downhill_slips_or_is_stalled_and_does_not_cycle() {
+    for (friction, torque, outcome) in [
+        (0.25, 30.0, Outcome::Slipping),
+        (0.9, 1.5, Outcome::Stalled),
+    ] {
+        let mut scenario = engineer();
+        scenario.terrain = slope(0.3, friction);
+        scenario.start.angle = 0.3;
+        scenario.robot.drivetrain.max_torque = torque;
+        scenario.duration = 5.0;
+        assert_eq!(why(&scenario).1.outcome, outcome, "friction {friction}");
+    }
+}
+
 #[test]
 fn worked_case_of_oracle_ten_is_seized_and_astride() {
     // A row of five, wheel 2 on the edge, wheel 3 on the top, three sliding contacts.

@@ -70,6 +70,30 @@ fn the_range_of_motion_is_that_of_all_steps_and_of_no_other_place() {
     assert_eq!(stance.position, Vector::new(5.0, -2.0));
 }
 
+/// Of the two ways, the shorter one counts, in one window or in two of two steps each.
+#[test]
+fn a_swing_is_the_way_there_and_back_again() {
+    let swing = |path: &[f64; 4], window: f64| {
+        let mut signals = Signals::default();
+        for (k, x) in path.iter().enumerate() {
+            let now = Reading::at_rest(0.25 * (k + 1) as f64, Vector::new(*x, 0.0));
+            signals.add((&now, 0.25), &[], std::iter::empty(), window);
+        }
+        signals.stance().swing[0]
+    };
+    for (path, expected) in [
+        ([0.0, 1.0, 3.0, 4.0], 0.0),
+        ([4.0, 3.0, 1.0, 0.0], 0.0),
+        ([0.0, 4.0, 3.0, 6.0], 1.0),
+        ([6.0, 3.0, 4.0, 0.0], 1.0),
+        ([0.0, 4.0, 0.0, 1.0], 4.0),
+        ([2.0, 1.0, 0.0, 2.0], 2.0),
+    ] {
+        assert_eq!(swing(&path, 10.0), expected, "{path:?}");
+        assert_eq!(swing(&path, 0.75), expected, "{path:?} in two windows");
+    }
+}
+
 /// Steps of three lengths over two windows, of a contact and a drive: each mean is the sum of value times time over the
 /// time.
 #[test]
