@@ -1,6 +1,9 @@
 """Many simulations at once."""
 
+import copy
 import math
+import pickle
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -217,3 +220,11 @@ def test_simulations_and_heights_for_which_there_is_no_memory_are_refused(
         two.heights(np.zeros(2_000_000))
     with pytest.raises(c2d.LimitError, match="simulations side by side"):
         c2d.Simulations([flat] * 1000)
+
+
+@pytest.mark.parametrize("copied", [copy.copy, copy.deepcopy, pickle.dumps])
+def test_many_are_not_copied(copied: Callable[[object], object]) -> None:
+    """A shallow copy advanced the robots of the original."""
+    many = c2d.Simulations(SCENARIOS[:1])
+    with pytest.raises(TypeError, match="Simulations cannot be copied or pickled"):
+        copied(many)

@@ -241,7 +241,10 @@ def test_a_lidar_that_turns_touches_nothing(tmp_path: Path, shape: str) -> None:
 
 @pytest.mark.parametrize(
     ("argument", "value"),
-    [("engine", "ode"), ("mesh", "keep"), ("missing", None), ("forward", "x"), ("tolerance", -1.0)],
+    [
+        *(("engine", "ode"), ("mesh", "keep"), ("missing", None), ("forward", "x")),
+        *(("tolerance", -1.0), ("trusted", 1), ("model", ["cart"])),
+    ],
 )
 def test_an_argument_with_an_unknown_value_is_refused(
     tmp_path: Path, argument: str, value: object
@@ -252,7 +255,7 @@ def test_an_argument_with_an_unknown_value_is_refused(
 
 
 @pytest.mark.parametrize("argument", ["packages", "arguments"])
-@pytest.mark.parametrize("value", [["a"], "a", 7, {"a": object()}, {7: "a"}, {"a": ["b"]}])
+@pytest.mark.parametrize("value", [["a"], "", 7, {"a": object()}, {7: "a"}, {"a": ["b"]}])
 def test_packages_and_arguments_that_are_no_pairs_are_refused(
     tmp_path: Path, argument: str, value: object
 ) -> None:

@@ -84,8 +84,7 @@ class Drive(Parameters, path="drive"):
     Parameters
     ----------
     speed : float
-        [m/s] Track speed; above 0 drives towards +x. Commands are limited to the `max_speed` of the
-        drivetrain.
+        [m/s] Track speed; above 0 drives towards +x. At most the `max_speed` of the drivetrain.
     schedule : array_like, shape (n, 2), optional
         Up to 10,000 increasing times [s], and the speed [m/s] that applies from each on.
     gait : Hold, Climb or callable, optional

@@ -113,6 +113,10 @@ class ReadOptions:
             if not (value is None or isinstance(value, str)) or value not in allowed:
                 rule = f"must be one of {', '.join(str(each) for each in allowed)}"
                 raise ScenarioError(name, value, rule)
+        if not isinstance(self.trusted, bool):
+            raise ScenarioError("trusted", self.trusted, "must be True or False")
+        if not (self.model is None or isinstance(self.model, str)):
+            raise ScenarioError("model", self.model, "must be the name of a model")
         _check_pairs(self.packages, "packages", "folders by their names", (str, os.PathLike))
         _check_pairs(self.arguments, "arguments", "texts or numbers by name", (str, int, float))
         for path, least, most in (

@@ -252,9 +252,9 @@ def read_robot(
         ground_friction=ground_friction,
         tolerance=tolerance,
         scale=scale,
-        trusted=trusted is True,
-        packages=packages or {},
-        arguments=arguments or {},
+        trusted=trusted,
+        packages={} if packages is None else packages,
+        arguments={} if arguments is None else arguments,
     )
     path = Path(path)
     reading, warnings = read_text(Files(path, options.packages).model(), path, options)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 
@@ -116,6 +116,10 @@ class Simulations(TakesKeywords):
         if not prepared:
             raise ScenarioError("scenarios", scenarios, "must be one or more")
         self._core, self._count = _core.Worlds(prepared), len(prepared)
+
+    def __reduce__(self) -> NoReturn:
+        """Refuse a copy, which would advance the same robots."""
+        raise TypeError("Simulations cannot be copied or pickled; a Simulation can")
 
     def __len__(self) -> int:
         """Count them."""

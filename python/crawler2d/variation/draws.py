@@ -120,7 +120,7 @@ class Variation:
                 continue
             if replaces:
                 rule = (
-                    "must not replace the values of `over`; scaled(low, high) and"
+                    "must not replace the values of `over` or `unknown`; scaled(low, high) and"
                     " shifted(low, high) vary about them"
                 )
                 raise ScenarioError(f"{name}[{path!r}]", distribution, rule)
