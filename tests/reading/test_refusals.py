@@ -119,6 +119,18 @@ def test_friction_that_differs_from_wheel_to_wheel_is_refused(tmp_path: Path) ->
     refused(tmp_path, urdf(WHEELS, slick), "must be that of all wheels")
 
 
+def test_blocks_of_gazebo_for_one_link_add_up_and_the_later_counts(tmp_path: Path) -> None:
+    blocks = "".join(
+        f'<gazebo reference="{side}_{end}">{mu}</gazebo>'
+        for side, _ in SIDES
+        for end in ("front", "rear")
+        for mu in ("<mu1>0.5</mu1><mu2>0.2</mu2>", "<mu1>0.3</mu1>", "<kp>1e6</kp>")
+    )
+    links = read(tmp_path, urdf(WHEELS, blocks)).tree.links
+    found = [shape.friction for link in links for shape in link.shapes]
+    assert {(each.first, each.second) for each in found if each} == {(0.3, 0.2)}
+
+
 def test_friction_above_that_of_the_ground_is_the_grounds_in_gazebo(tmp_path: Path) -> None:
     rough = '<gazebo reference="left_front"><mu1>2</mu1><mu2>3</mu2></gazebo>'
     assert read(tmp_path, urdf(WHEELS, rough)).friction == 1.0

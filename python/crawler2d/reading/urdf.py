@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import defaultdict
 from collections.abc import Iterable
 from dataclasses import replace
 from functools import partial
@@ -161,12 +162,18 @@ def _frictions(root: Element, *, is_bullet: bool) -> dict[str, Friction]:
             value, at = coefficient(lateral, link)
             both = Friction(first=value, second=value, first_at=at, second_at=at)
             frictions[link.attribute("name")] = both
+    blocks = defaultdict[str, list[Element]](list)
     for block in () if is_bullet else root.all("gazebo"):
-        name = block.attributes.get("reference", "")
-        mu1, mu2, fdir1 = (block.only(tag) for tag in ("mu1", "mu2", "fdir1"))
+        blocks[block.attributes.get("reference", "")].append(block)
+    for name, of_link in blocks.items():
+        # A later block replaces what it has of an earlier one.
+        mu1, mu2, fdir1 = (
+            next(filter(None, (block.only(tag) for block in reversed(of_link))), None)
+            for tag in ("mu1", "mu2", "fdir1")
+        )
         if not name or mu1 is mu2 is None:
             continue
-        (first, first_at), (second, second_at) = (coefficient(mu, block) for mu in (mu1, mu2))
+        (first, first_at), (second, second_at) = (coefficient(mu, of_link[0]) for mu in (mu1, mu2))
         direction = None
         if fdir1 is not None:
             direction = unit(fdir1.reals(3, "value" if "value" in fdir1.attributes else None))
