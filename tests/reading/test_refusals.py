@@ -9,6 +9,7 @@ import pytest
 import crawler2d as c2d
 from tests.kept import refusing
 from tests.reading.carts import (
+    ACROSS,
     FILES,
     LIMIT,
     SAID,
@@ -178,6 +179,36 @@ def test_wheels_with_upright_or_slanted_axles_are_refused(tmp_path: Path) -> Non
         across = f'<origin rpy="{turn} 0 0"/>'
         text = urdf(*(pair(end, x, axis=axis, origin=across) for end, x in (("a", 1), ("b", 0))))
         refused(tmp_path, text, rule)
+
+
+@pytest.mark.parametrize(
+    ("how", "reason"),
+    [
+        ({"type": "floating"}, "left_front is moved by a joint that is no hinge but floating"),
+        (
+            {"type": "revolute", "limit": LIMIT},
+            "left_front turns by at most 115 degrees",
+        ),
+        ({"axis": "0 0 1"}, "left_front turns about an axis that is not level"),
+        (
+            {"origin": '<origin rpy="1.3 0 0"/>'},
+            "left_front is tilted by 15.5 degrees against the axis on which it turns",
+        ),
+        (
+            {"origin": ACROSS.replace("rpy", 'xyz="0.003 0 0" rpy')},
+            "left_front has its middle 3 mm beside the axis on which it turns",
+        ),
+    ],
+)
+def test_a_robot_without_wheels_says_why_a_round_shape_is_none(
+    how: dict[str, Any], reason: str, tmp_path: Path
+) -> None:
+    path = tmp_path / "cart.urdf"
+    path.write_text(urdf(pair("front", 0.2, **how), pair("rear", -0.2, **how)), encoding="utf-8")
+    with refusing(SAID, "must have wheels") as caught:
+        quietly(path)
+    assert caught.value.value == "4 round shapes, none of them a wheel"
+    assert caught.value.rule.endswith(f"tracks= names; {reason}")
 
 
 def test_a_single_pair_of_wheels_is_refused(tmp_path: Path) -> None:

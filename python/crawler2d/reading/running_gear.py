@@ -23,6 +23,7 @@ from crawler2d.reading.wheels import (
     radius_about,
     subtrees,
     wheel_shapes,
+    why_no_wheel,
 )
 
 __all__ = [
@@ -269,6 +270,7 @@ def _lateral(tree: Tree, surfaces: Surfaces) -> Array:
         )
         count = sum(shape.kind in _DRUMS for link in tree.links for shape in link.shapes)
         got = f"{count} round shapes, none of them a wheel" if count else "no round shape"
+        rule += f"; {why_no_wheel(tree)}" if count else ""
         raise ScenarioError(str(tree.at), got, rule)
     rows = np.array(axes)
     alike = np.abs(rows @ rows.T) >= math.cos(PARALLEL)

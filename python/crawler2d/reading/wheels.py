@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -24,6 +25,7 @@ __all__ = [
     "radius_about",
     "subtrees",
     "wheel_shapes",
+    "why_no_wheel",
 ]
 
 PARALLEL = 0.05
@@ -308,6 +310,51 @@ def wheel_shapes(tree: Tree) -> dict[str, list[tuple[Link, Shape]]]:
         if pairs and (is_round or grousers_on(shapes, joint) is not None):
             wheels[child] = pairs
     return wheels
+
+
+def why_no_wheel(tree: Tree) -> str:
+    """Say why a round shape is no wheel of a robot that has none; empty if there is none.
+
+    Of several, it is about the first on a joint that moves.
+    """
+    reasons = [
+        (joint is None, f"{link.name} {next(_faults(link, shape, joint, tree))}")
+        for link in tree.links
+        for shape in link.shapes
+        if shape.is_round
+        for joint in (_moved_by(link.name, tree),)
+    ]
+    return min(reasons, key=lambda each: each[0])[1] if reasons else ""
+
+
+def _moved_by(name: str, tree: Tree) -> Joint | None:
+    """Return the joint that moves a link, on which others may hold it; None if none does."""
+    joint = tree.joints.get(name)
+    while joint is not None and joint.is_locked:
+        joint = tree.joints.get(joint.parent)
+    return joint
+
+
+def _faults(link: Link, shape: Shape, joint: Joint | None, tree: Tree) -> Iterator[str]:
+    """Yield the conditions of a wheel that a round shape does not meet, the first one first."""
+    if joint is None:
+        yield "is moved by no joint"
+        return
+    if joint.kind != "hinge":
+        yield f"is moved by a joint that is no hinge but {joint.kind}"
+    if not joint.is_unlimited:
+        yield f"turns by at most {math.degrees(joint.upper - joint.lower):.0f} degrees"
+    if abs(joint.axis[2]) > UPRIGHT:
+        yield "turns about an axis that is not level"
+    if shape.kind != "sphere" and not is_parallel(shape.axis, joint.axis):
+        angle = math.degrees(math.acos(min(1.0, abs(float(shape.axis @ joint.axis)))))
+        yield f"is tilted by {angle:.3g} degrees against the axis on which it turns"
+    if radius_about(shape, joint.place, joint.axis) is None:
+        off = float(np.linalg.norm(np.cross(shape.pose.place - joint.place, joint.axis)))
+        yield f"has its middle {1e3 * off:.3g} mm beside the axis on which it turns"
+    if any(each.parent == link.name and not each.is_locked for each in tree.joints.values()):
+        yield "carries another joint that moves"
+    yield "turns with shapes that are not round about its axis"
 
 
 def _grouser(
