@@ -139,7 +139,6 @@ fn grip(model: &Model, part: &Part, forwards: bool) -> Grip {
     match part.drive {
         Some(drive) if model.has_motor(drive) => Grip::Driven(if forwards { 1.0 } else { -1.0 }),
         Some(_) => Grip::Free,
-        None if part.kind == BodyKind::Wheel => Grip::Free,
         None => Grip::Still,
     }
 }

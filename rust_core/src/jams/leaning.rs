@@ -293,9 +293,13 @@ impl Both<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::draw::Draw;
     use crate::geometry::Disc;
     use crate::jams::layout::{Grip, Layout, Outline, Surface};
     use crate::jams::places::{Facing, Place};
+    use crate::jams::tests::{
+        Pair, Standing, contact_of, on_two, place, posture, surface, touching,
+    };
     use crate::robot::BodyKind;
 
     /// Two discs of one radius [m], each on a point of the ground.
@@ -348,6 +352,106 @@ mod tests {
             pair: [of(0), of(1)],
             origin: Vector::ZERO,
             pushes: [index(0), index(1)],
+        }
+    }
+
+    /// The first force of each of the contacts of two surfaces on two places.
+    fn first_of(setting: &Setting) -> Both<'_> {
+        let contacts = [0, 1].map(|k| contact_of(setting, k));
+        Both {
+            setting,
+            pair: contacts.map(|i| setting.contacts[i]),
+            origin: Vector::ZERO,
+            pushes: contacts.map(|i| setting.pushes(i).next().expect("it has one")),
+        }
+    }
+
+    #[test]
+    fn where_two_forces_carry_the_weight_their_equation_is_zero_and_the_place_is_found() {
+        let mut draw = Draw(81);
+        let (mut tried, mut on_circles) = (0, 0);
+        for case in 0..300 {
+            let Some(Standing { at, setting, .. }) = on_two(&mut draw, case) else {
+                continue;
+            };
+            tried += 1;
+            let (both, turn) = (first_of(&setting), Turn::by(at.angle));
+            // Forces of some weights, at arms of some metres.
+            assert!(both.imbalance(at.position, turn).abs() < 1e-14, "{case}");
+            let [value, size] = both.equation(turn);
+            assert!(value.abs() < 1e-12 * size, "{case}: {value} {size}");
+            let found = both.positions(turn);
+            let is_at = |place: &Vector| (*place - at.position).length() < 1e-7;
+            assert!(found.iter().any(is_at), "{case}: {found:?} {at:?}");
+            // Beside it, it is no larger than terms of that size, and in proportion to the square of moments on a circle.
+            let beside = Turn::by(at.angle + 1e-3);
+            let [value, size] = both.equation(beside);
+            assert!(value.abs() < 4.0 * size, "{case}: {value} {size}");
+            let has_circle = both
+                .loci(turn)
+                .iter()
+                .any(|l| matches!(l, Locus::Circle(..)));
+            if has_circle {
+                on_circles += 1;
+                let mut long = setting.clone();
+                long.layout.reach *= 1e3;
+                let [small, small_size] = first_of(&long).equation(beside);
+                for (found, before) in [(small, value), (small_size, size)] {
+                    assert!((found * 1e6 / before - 1.0).abs() < 1e-6, "{case}");
+                }
+            }
+        }
+        assert!(tried > 80 && on_circles > 20, "{tried} {on_circles}");
+    }
+
+    /// Along lines of one direction, the moment of one force over the other's is linear.
+    #[test]
+    fn a_place_on_a_line_has_no_imbalance() {
+        let mut draw = Draw(82);
+        for case in 0..50 {
+            let at = posture(&mut draw);
+            let normal = Vector::from_angle(draw.between(1.0, 2.1));
+            let pieces = [normal, -normal].map(|n| touching(&mut draw, Pair::Across, &at, n));
+            let surfaces = pieces
+                .map(|piece| surface(piece.0, Grip::Driven(1.0)))
+                .to_vec();
+            let places = [0, 1].map(|k| place(pieces[k].1, [0.2, 0.9][k])).to_vec();
+            let setting = crate::jams::tests::setting(surfaces, places, Vector::new(0.1, 0.05));
+            let both = first_of(&setting);
+            let found = both.along_line(at.angle).expect("both are on lines");
+            let turn = Turn::by(found.angle);
+            assert!((found.angle - at.angle).abs() < 1e-15);
+            // A place some metres away, at which forces have moments of some weights.
+            let off = both.imbalance(found.position, turn);
+            assert!(
+                off.abs() < 1e-12 * (1.0 + found.position.length_squared()),
+                "{case}: {off}"
+            );
+            let Locus::Line(along, offset) = both.loci(turn)[0] else {
+                panic!("it is one");
+            };
+            let gap = along.dot(found.position) - offset;
+            assert!(
+                gap.abs() < 1e-13 * (1.0 + found.position.length()),
+                "{case}: {gap}"
+            );
+        }
+    }
+
+    #[test]
+    fn an_angle_is_the_same_but_for_full_turns() {
+        for (angle, turns) in [
+            (0.3, 0.0),
+            (3.1, 0.0),
+            (3.2, 1.0),
+            (-3.2, -1.0),
+            (13.0, 2.0),
+        ] {
+            let found = within_half_a_turn(angle);
+            assert!(
+                (angle - turns * TAU - found).abs() < 1e-14,
+                "{angle}: {found}"
+            );
         }
     }
 

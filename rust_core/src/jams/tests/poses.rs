@@ -1,7 +1,6 @@
 //! Poses that contacts fix are found: a robot made to touch and to balance in a pose is found there.
 
 use super::*;
-use crate::geometry::cross;
 use crate::jams::fixed::{meet, solve};
 use crate::jams::setting::{TOUCHING, is_same};
 
@@ -131,48 +130,19 @@ fn is_found(
     found.iter().any(|posture| is_near(posture, at))
 }
 
-/// The centre of mass is put over the point in which the lines of two forces meet, or both lines and that of the weight
-/// are parallel.
 #[test]
 fn the_pose_in_which_two_forces_were_made_to_carry_the_weight_is_found() {
     let mut draw = Draw(4);
     let mut tried = 0;
     for case in 0..300 {
-        let at = posture(&mut draw);
-        let frictions = [0.0; 2].map(|_| draw.between(0.2, 0.9));
-        let grips = [
-            [Grip::Driven(1.0), Grip::Driven(-1.0), Grip::Free][case / 9 % 3],
-            [Grip::Driven(1.0), Grip::Still][case / 27 % 2],
-        ];
-        let normals = [draw.between(0.2, 1.4), draw.between(1.8, 3.0)].map(Vector::from_angle);
-        let kinds = [case, case / 3].map(|k| PAIRS[k % 3]);
-        let pieces: Vec<_> = (kinds.iter().zip(normals))
-            .map(|(pair, normal)| touching(&mut draw, *pair, &at, normal))
-            .collect();
-        let forces = [0, 1].map(|k| {
-            let slope = match grips[k] {
-                Grip::Driven(sign) => sign * frictions[k],
-                Grip::Free => 0.0,
-                Grip::Still => frictions[k],
-            };
-            normals[k] + right_of(normals[k]) * slope
-        });
-        let sine = cross(forces[0].normalize(), forces[1].normalize());
-        if sine.abs() < 0.2 {
+        let Some(Standing { at, kinds, setting }) = on_two(&mut draw, case) else {
             continue;
-        }
-        // One line is p + s f; the other is q + t g.
-        let (p, q) = (pieces[0].2, pieces[1].2);
-        let s = cross(q - p, forces[1]) / cross(forces[0], forces[1]);
-        let crossing = p + forces[0] * s;
-        let over = Vector::new(crossing.x, at.position.y + draw.between(-0.1, 0.1));
-        let center_of_mass = Turn::by(-at.angle).apply(over - at.position);
-        if center_of_mass.length() > 0.6 {
-            continue;
-        }
+        };
         tried += 1;
+        let found = setting.leaning(&Cancel::default());
+        let found = found.expect("nobody asks it to end");
         assert!(
-            is_found(&pieces, (grips, frictions), center_of_mass, &at),
+            found.iter().any(|posture| is_near(posture, &at)),
             "case {case}: {kinds:?} {at:?}"
         );
     }
