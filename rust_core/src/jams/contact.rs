@@ -282,24 +282,91 @@ mod tests {
         }
     }
 
-    #[test]
-    fn on_its_locus_a_gap_is_0_and_changes_by_its_gradient() {
+    fn contact(kind: Kind) -> Contact {
+        Contact {
+            surface: 0,
+            place: 0,
+            kind,
+        }
+    }
+
+    fn kinds() -> [Kind; 3] {
         let disc = Disc {
             center: Vector::new(0.3, -0.1),
             radius: 0.05,
         };
         let corner = Vector::new(0.1, 0.2);
-        let kinds = [
+        [
             Kind::OnFace(disc, Vector::new(0.6, 0.8), 0.1),
             Kind::OnCorner(disc, corner, 0.01),
             Kind::Across(Vector::new(0.6, -0.8), 0.3, corner, 0.01),
-        ];
-        for kind in kinds {
-            let contact = Contact {
-                surface: 0,
-                place: 0,
-                kind,
-            };
+        ]
+    }
+
+    #[test]
+    fn a_gap_is_the_same_from_another_origin_and_the_ground_near_an_anchor() {
+        let posture = |position| Posture {
+            position,
+            angle: 0.4,
+        };
+        let (here, origin) = (Vector::new(0.2, 0.7), Vector::new(5.0, -3.0));
+        for kind in kinds() {
+            let contact = contact(kind);
+            let gap = contact.touch(&posture(here)).gap;
+            let moved = contact.seen_from(origin);
+            let seen = moved.touch(&posture(here - origin)).gap;
+            assert!((gap - seen).abs() < 1e-14, "{kind:?}: {gap} {seen}");
+            // Seen from its anchor, it is at the origin.
+            let anchor = contact.anchor();
+            assert!(contact.seen_from(anchor).anchor().length() < 1e-15);
+            assert!(
+                (moved.anchor() + origin - anchor)
+                    .dot(Vector::new(0.6, 0.8))
+                    .abs()
+                    < 1e-14
+            );
+        }
+    }
+
+    /// A disc turns about nothing that a face keeps, and a run turns with the robot.
+    #[test]
+    fn two_faces_are_parallel_or_two_runs_up_to_a_nanoradian() {
+        let [face, corner, run] = kinds();
+        let turned = |kind: Kind, angle: f64| {
+            let turn = Turn::by(angle);
+            contact(match kind {
+                Kind::OnFace(disc, normal, height) => {
+                    Kind::OnFace(disc, turn.apply(normal), height)
+                }
+                Kind::Across(outward, distance, center, radius) => {
+                    Kind::Across(turn.apply(outward), distance, center, radius)
+                }
+                Kind::OnCorner(..) => kind,
+            })
+        };
+        for kind in [face, run] {
+            for (angle, is_parallel) in [
+                (0.0, true),
+                (0.5e-9, true),
+                (-0.5e-9, true),
+                (2e-9, false),
+                (-2e-9, false),
+                (std::f64::consts::PI, true),
+                (0.5, false),
+            ] {
+                let found = contact(kind).is_parallel_to(&turned(kind, angle));
+                assert_eq!(found, is_parallel, "{kind:?} {angle}");
+            }
+        }
+        assert!(!contact(corner).is_parallel_to(&contact(corner)));
+        let same = Kind::Across(Vector::new(0.6, 0.8), 0.3, Vector::ZERO, 0.0);
+        assert!(!contact(face).is_parallel_to(&contact(same)));
+    }
+
+    #[test]
+    fn on_its_locus_a_gap_is_0_and_changes_by_its_gradient() {
+        for kind in kinds() {
+            let contact = contact(kind);
             let gap = |p: Vector, angle: f64| contact.touch_turned(p, Turn::by(angle)).gap;
             let position = match contact.locus(Turn::by(0.2)) {
                 Locus::Line(normal, offset) => normal * (offset / normal.length_squared()),

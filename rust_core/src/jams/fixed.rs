@@ -234,3 +234,239 @@ pub(super) fn solve(rows: &[[f64; 3]; 3], right: &[f64; 3]) -> Option<[f64; 3]> 
     let found = [of(0), of(1), of(2)];
     found.iter().all(|x| x.is_finite()).then_some(found)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::draw::Draw;
+    use crate::geometry::Disc;
+    use crate::jams::contact::Kind;
+
+    fn vector(draw: &mut Draw, most: f64) -> Vector {
+        let [x, y] = [0.0; 2].map(|_| draw.between(-most, most));
+        Vector::new(x, y)
+    }
+
+    /// A line or a circle through a point, not far from the origin.
+    fn through(draw: &mut Draw, point: Vector, is_circle: bool) -> Locus {
+        if is_circle {
+            let center = vector(draw, 0.5);
+            Locus::Circle(center, (point - center).length())
+        } else {
+            let normal = Vector::from_angle(draw.between(-3.0, 3.0));
+            Locus::Line(normal, normal.dot(point))
+        }
+    }
+
+    /// Any of lines and circles.
+    const KINDS: [[bool; 3]; 5] = [
+        [false, false, false],
+        [false, true, false],
+        [true, false, true],
+        [true, true, false],
+        [true, true, true],
+    ];
+
+    /// Two circles may meet in a second point on the same lines.
+    #[test]
+    fn what_meets_in_a_point_has_no_residual_and_is_found_there() {
+        let mut draw = Draw(71);
+        for case in 0..500 {
+            let point = vector(&mut draw, 0.4);
+            let loci = KINDS[case % 5].map(|is_circle| through(&mut draw, point, is_circle));
+            let [value, size] = residual(&loci);
+            // Circles round almost one point lose digits.
+            assert!(value.abs() < 1e-12 * size, "{case}: {value} {size}");
+            let (lines, _) = lines(&loci);
+            let (_, scale) = meeting(lines[0], lines[1]);
+            if scale.abs() < 0.05 * lines[0].0.length() * lines[1].0.length() {
+                continue;
+            }
+            let found = positions(&loci);
+            assert_eq!(found.len(), 1, "{case}");
+            assert!((found[0] - point).length() < 1e-11, "{case}: {found:?}");
+        }
+    }
+
+    /// If nothing is farther from the origin than 1 m, the terms of a value are squares of a length of at most its size.
+    #[test]
+    fn a_residual_is_no_larger_than_its_size() {
+        let mut draw = Draw(72);
+        for case in 0..2_000 {
+            let loci = KINDS[case % 5].map(|is_circle| {
+                let distance = draw.between(0.0, 1.0);
+                let normal = Vector::from_angle(draw.between(-3.0, 3.0));
+                if is_circle {
+                    Locus::Circle(normal * distance, draw.between(0.0, 1.0))
+                } else {
+                    Locus::Line(normal, distance)
+                }
+            });
+            let [value, size] = residual(&loci);
+            assert!(
+                value.abs() <= size * (1.0 + 1e-14),
+                "{case}: {value} {size}"
+            );
+        }
+        let line = |x: f64, y: f64, offset: f64| Locus::Line(Vector::new(x, y), offset);
+        let circle = |x: f64, y: f64| Locus::Circle(Vector::new(x, y), 0.0);
+        let root = 0.5_f64.sqrt();
+        for (loci, least) in [
+            // Lines that meet in the origin, 1 m from it, and in a corner of the square round it.
+            (
+                [line(1.0, 0.0, 0.0), line(0.0, 1.0, 0.0), circle(1.0, 0.0)],
+                1.0,
+            ),
+            (
+                [line(1.0, 0.0, 0.0), line(0.0, 1.0, 1.0), circle(0.0, -1.0)],
+                4.0,
+            ),
+            (
+                [
+                    line(1.0, 0.0, 1.0),
+                    line(0.0, 1.0, 1.0),
+                    circle(-root, -root),
+                ],
+                5.8,
+            ),
+            (
+                [
+                    line(1.0, 0.0, 0.0),
+                    line(0.0, 1.0, 0.0),
+                    line(root, root, 1.0),
+                ],
+                1.0,
+            ),
+            (
+                [
+                    line(1.0, 0.0, 0.0),
+                    line(0.0, 1.0, 1.0),
+                    line(0.0, -1.0, 1.0),
+                ],
+                2.0,
+            ),
+        ] {
+            let [value, size] = residual(&loci);
+            let most = size * (1.0 + 1e-14);
+            assert!((least..=most).contains(&value.abs()), "{value} {size}");
+        }
+    }
+
+    /// The second of two almost parallel lines tells nothing, nor the line through the intersections of circles round one
+    /// point.
+    #[test]
+    fn of_lines_that_are_almost_one_the_places_on_a_circle_are_found() {
+        let mut draw = Draw(73);
+        for case in 0..100 {
+            let point = vector(&mut draw, 0.4);
+            let circle = through(&mut draw, point, true);
+            let Locus::Circle(center, radius) = circle else {
+                panic!("it is one");
+            };
+            let tilted = |angle: f64| {
+                let normal = Vector::from_angle(angle);
+                Locus::Line(normal, normal.dot(point))
+            };
+            let angle = draw.between(-3.0, 3.0);
+            let other = through(&mut draw, point, true);
+            for loci in [
+                [tilted(angle), tilted(angle + 1e-10), circle],
+                [tilted(angle), tilted(angle + 1e-7), circle],
+                [tilted(angle), circle, circle],
+                [circle, circle, other],
+                [circle, other, circle],
+            ] {
+                let found = positions(&loci);
+                assert_eq!(found.len(), 2, "{case}: {loci:?}");
+                assert!(
+                    found.iter().any(|place| (*place - point).length() < 1e-6),
+                    "{case}: {found:?} {point}"
+                );
+                for place in found {
+                    let off = (place - center).length() - radius;
+                    assert!(off.abs() < 1e-12, "{case}: {off} m");
+                }
+            }
+        }
+    }
+
+    /// Of three lines, two of which are almost parallel, the sharpest crossing is the most accurate.
+    #[test]
+    fn three_lines_meet_where_the_sharpest_crossing_is() {
+        let point = Vector::new(0.3, -0.2);
+        let line = |angle: f64, off: f64| {
+            let normal = Vector::from_angle(angle);
+            Locus::Line(normal, normal.dot(point) + off)
+        };
+        // Where the second is off by 1 nm, it crosses the first some millimetres away.
+        for loci in [
+            [line(0.4, 0.0), line(0.4 + 1e-7, 1e-9), line(1.9, 0.0)],
+            [line(0.4, 0.0), line(1.9, 0.0), line(0.4 + 1e-7, 1e-9)],
+            [line(1.9, 0.0), line(0.4 + 1e-7, 1e-9), line(0.4, 0.0)],
+        ] {
+            let found = positions(&loci);
+            assert_eq!(found.len(), 1);
+            assert!((found[0] - point).length() < 2e-9, "{found:?}");
+        }
+        // Parallel lines meet nowhere.
+        assert!(positions(&[0.0, 0.1, 0.2].map(|off| line(0.4, off))).is_empty());
+    }
+
+    #[test]
+    fn a_line_cuts_a_circle_in_two_points_or_its_nearest_point_is_returned() {
+        let mut draw = Draw(74);
+        for case in 0..200 {
+            let (center, radius) = (vector(&mut draw, 1.0), draw.between(0.1, 1.0));
+            let normal = vector(&mut draw, 2.0);
+            let far = draw.between(-1.5, 1.5) * radius;
+            let offset = normal.dot(center) + far * normal.length();
+            let [one, other] = on_circle((normal, offset), (center, radius));
+            for place in [one, other] {
+                assert!((normal.dot(place) - offset).abs() < 1e-12, "{case}");
+                let distance = (place - center).length();
+                assert!((distance - radius.max(far.abs())).abs() < 1e-12, "{case}");
+            }
+            let apart = 2.0 * (radius * radius - far * far).max(0.0).sqrt();
+            assert!(((one - other).length() - apart).abs() < 1e-7, "{case}");
+        }
+    }
+
+    /// Whichever way their normals point.
+    #[test]
+    fn parallel_lines_are_as_far_apart_as_their_offsets_differ() {
+        let normal = Vector::new(0.6, 0.8);
+        for (one, other, distance, size) in [
+            ((normal, 1.0), (normal, 0.25), 0.75, 1.25),
+            ((normal, 1.0), (-normal, -0.25), 0.75, 1.25),
+            ((normal, 1.0), (normal, -0.25), 1.25, 1.25),
+            ((-normal, -1.0), (normal, 1.0), 0.0, 2.0),
+        ] {
+            let found = apart(one, other);
+            assert!((found[0] - distance).abs() < 1e-15, "{found:?}");
+            assert!((found[1] - size).abs() < 1e-15, "{found:?}");
+        }
+    }
+
+    /// Each in three directions, of which pairs are parallel or not.
+    #[test]
+    fn contacts_are_told_apart_by_how_many_of_their_lines_are_parallel() {
+        let on = |normal: Vector| {
+            let disc = Disc {
+                center: Vector::new(0.1, 0.2),
+                radius: 0.05,
+            };
+            Contact {
+                surface: 0,
+                place: 0,
+                kind: Kind::OnFace(disc, normal, 0.3),
+            }
+        };
+        let of = |normals: [Vector; 3]| parallel(&normals.map(on));
+        let (x, y, z) = (Vector::X, Vector::Y, Vector::new(0.6, 0.8));
+        assert!(matches!(of([x, y, z]), Parallel::None));
+        assert!(matches!(of([x, -x, z]), Parallel::Two(0, 1)));
+        assert!(matches!(of([x, y, x]), Parallel::Two(0, 2)));
+        assert!(matches!(of([x, y, -y]), Parallel::Two(1, 2)));
+        assert!(matches!(of([x, x, -x]), Parallel::All));
+    }
+}

@@ -156,6 +156,38 @@ mod tests {
         }
     }
 
+    /// All of the wall is an arc from its foot to its top.
+    #[test]
+    fn an_arc_that_takes_up_a_face_has_the_directions_of_its_own_ends() {
+        let points = [[-1.0, 0.0], [0.0, 0.0], [0.0, 0.1], [1.0, 0.1]];
+        let surface = Surface::rounded(0.1, 0.7);
+        let profile = Profile::new("terrain", &points, surface, true).expect("a step");
+        let places = Place::of_lane(3, &profile);
+        assert_eq!(places.len(), 3);
+        let Facing::Corner {
+            cone,
+            center,
+            radius,
+        } = places[2].shape
+        else {
+            panic!("{places:?}");
+        };
+        assert!((center - Vector::new(0.1, 0.0)).length() < 1e-15);
+        assert!((radius - 0.1).abs() < 1e-15);
+        assert!((cone[0] - Vector::Y).length() < 1e-12);
+        assert!((cone[1] - Vector::NEG_X).length() < 1e-12);
+        assert!(places.iter().all(|place| place.lane == 3));
+        assert!(
+            places
+                .iter()
+                .all(|place| (place.friction - 0.7).abs() < 1e-15)
+        );
+        // The faces have no number, and the corner has that of its edge.
+        let convex = profile.edges.iter().find(|edge| edge.angle > 0.0);
+        let edges = [None, None, convex.map(|edge| edge.id)];
+        assert_eq!([0, 1, 2].map(|k| places[k].edge), edges);
+    }
+
     #[test]
     fn a_face_is_touched_as_far_as_its_ends_and_a_tolerance_beyond() {
         let face = Facing::Face {
