@@ -222,6 +222,34 @@ mod tests {
         (cell, (surface, place))
     }
 
+    /// With a sign for the order of its sides; a range of one of them is a range of the volume.
+    #[test]
+    fn a_determinant_is_the_volume_of_a_box() {
+        let row = |x: f64, y: f64, z: f64| [x, y, z].map(Interval::at);
+        let sides = [row(2.0, 0.0, 0.0), row(0.0, 3.0, 0.0), row(0.0, 0.0, 5.0)];
+        for (order, volume) in [
+            ([0, 1, 2], 30.0),
+            ([1, 2, 0], 30.0),
+            ([2, 0, 1], 30.0),
+            ([1, 0, 2], -30.0),
+            ([0, 2, 1], -30.0),
+            ([2, 1, 0], -30.0),
+        ] {
+            let [a, b, c] = order.map(|side| sides[side]);
+            assert_eq!(determinant(a, b, c), Interval::at(volume), "{order:?}");
+        }
+        // Sheared, it keeps its volume; a range of a side is one of it.
+        let sheared = row(7.0, 3.0, -2.0);
+        assert_eq!(determinant(sides[0], sheared, sides[2]), Interval::at(30.0));
+        let long = [
+            Interval::new(2.0, 4.0),
+            Interval::at(0.0),
+            Interval::at(0.0),
+        ];
+        let found = determinant(long, sides[1], sides[2]);
+        assert_eq!(found, Interval::new(30.0, 60.0));
+    }
+
     #[test]
     fn the_gap_between_a_run_and_an_edge_is_how_far_the_run_is_raised() {
         let family = family_on_a_step();

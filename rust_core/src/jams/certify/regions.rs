@@ -148,3 +148,114 @@ impl Pair {
         Ok(setting.fixed(cancel)?.into_iter().find_map(of))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Vector;
+    use crate::jams::certify::tests::{belts_on_a_step, family_on_a_step, stands};
+
+    fn pair(smallest: f64) -> Pair {
+        let effort = SearchEffort {
+            depth: 1e-3,
+            smallest,
+            cells: 10,
+            keeps_cells: false,
+        };
+        Pair {
+            wheels: family_on_a_step(),
+            belt: belts_on_a_step(),
+            effort,
+        }
+    }
+
+    /// The poses of the wheels in the middle of all ranges in which forces carry them, each with its depth [m].
+    fn depths(pair: &Pair) -> Vec<f64> {
+        let shares = pair.wheels.root().shares();
+        let (setting, all) = stands(&pair.wheels, &shares);
+        let carried = all.iter().filter(|(posture, contacts)| {
+            let loads = setting.loads(contacts, posture);
+            loads.is_some()
+        });
+        let depth =
+            |(posture, _): &(Posture, Vec<usize>)| pair.wheels.depth(&setting.places, posture);
+        carried.map(depth).collect()
+    }
+
+    #[test]
+    fn a_jam_has_ground_inside_its_track_as_deep_as_is_asked_for() {
+        let mut pair = pair(0.5);
+        let (shares, cancel) = (pair.wheels.root().shares(), Cancel::default());
+        let deepest = depths(&pair).into_iter().fold(0.0, f64::max);
+        assert!(deepest > 5e-3, "{deepest} m");
+        for (depth, is_found) in [(deepest - 1e-9, true), (deepest + 1e-9, false)] {
+            pair.effort.depth = depth;
+            let found = pair.jam(&shares, &cancel).expect("nobody asks it to end");
+            assert_eq!(found.is_some(), is_found, "{depth} m");
+        }
+    }
+
+    /// So does a belt that runs round them.
+    #[test]
+    fn a_range_in_whose_middle_wheels_jam_has_that_jam() {
+        let (pair, mut certificate) = (pair(0.5), Certificate::default());
+        let root = pair.wheels.root();
+        let found = pair.status(&root, &mut certificate, &Cancel::default());
+        let (status, is_held) = found.expect("nobody asks it to end");
+        let RegionStatus::Jams(shares, jam) = status else {
+            panic!("{status:?}");
+        };
+        assert_eq!(shares, root.shares());
+        assert_eq!((jam.contacts.len(), is_held), (3, true));
+    }
+
+    /// Of two parameters, each on one side of its range, and of a quarter of it.
+    fn quarter() -> Cell {
+        let mut cell = Cell::ZERO;
+        (cell.low[3], cell.high[3]) = (0.25, 0.5);
+        (cell.low[4], cell.high[4]) = (0.75, 1.0);
+        cell
+    }
+
+    #[test]
+    fn a_range_of_two_parameters_has_four_corners() {
+        let found: Vec<[f64; 2]> = pair(0.1)
+            .corners(&quarter())
+            .map(|[height, friction, ..]| [height, friction])
+            .collect();
+        assert_eq!(found, [[0.25, 0.75], [0.5, 0.75], [0.25, 1.0], [0.5, 1.0]]);
+    }
+
+    /// None of these asks for a jam at a corner.
+    #[test]
+    fn a_range_is_split_until_it_is_small_or_nothing_is_left_to_find() {
+        let jam = || Jam {
+            position: Vector::ZERO,
+            angle: 0.0,
+            contacts: Vec::new(),
+        };
+        let jams = || RegionStatus::Jams(vec![0.4, 0.9], jam());
+        let cancel = Cancel::default();
+        let is_split = |smallest: f64, status: &RegionStatus, is_held: bool| {
+            let found = pair(smallest).is_worth_a_split((status, is_held), &quarter(), 4, &cancel);
+            found.expect("nobody asks it to end")
+        };
+        for (smallest, is_wide) in [(0.2, true), (0.25, false), (0.3, false)] {
+            assert_eq!(is_split(smallest, &RegionStatus::Undecided, false), is_wide);
+            assert_eq!(is_split(smallest, &jams(), true), is_wide);
+            assert!(!is_split(smallest, &RegionStatus::Certified(3), false));
+            assert!(!is_split(smallest, &RegionStatus::AsBelt, true));
+        }
+    }
+
+    /// A cell has seven numbers twice, three of a twist and a word for its exclusion, of 8 bytes each.
+    #[test]
+    fn cells_take_twice_their_bytes_while_their_vector_grows() {
+        let refused = ask("cells", 1 << 40).expect_err("no machine has that much");
+        let LimitError::Memory { needed, .. } = refused else {
+            panic!("{refused:?}");
+        };
+        assert_eq!(needed, 2 * 18 * 8 << 40);
+        assert!(ask("cells", 1000).is_ok());
+    }
+}

@@ -124,3 +124,100 @@ impl Family {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Vector;
+    use crate::jams::certify::family::check_wheels;
+    use crate::jams::certify::interval::Rectangle;
+    use crate::jams::certify::tests::family_on_a_step;
+    use crate::jams::certify::touch::Normals;
+    use crate::jams::layout::{Grip, Outline};
+
+    /// A cell that is so wide in x, y [m] and angle [rad].
+    fn cell(widths: [f64; 3]) -> Cell {
+        let mut cell = Cell::ZERO;
+        for (number, width) in widths.into_iter().enumerate() {
+            (cell.low[number], cell.high[number]) = (1.0, 1.0 + width);
+        }
+        cell
+    }
+
+    /// On the level face before the step.
+    fn on_level() -> Touch {
+        Touch {
+            surface: 0,
+            place: 0,
+            normals: Normals {
+                bisector: Vector::Y,
+                sines: [0.0; 2],
+                circle: None,
+                is_on_face: true,
+            },
+            slopes: [0.5; 2],
+            arm: Rectangle::at(Vector::ZERO),
+            radius: 0.05,
+            slides: true,
+        }
+    }
+
+    /// Lengths count in radii of the smallest wheel, and a turn by how far it moves the middle between centre and farthest
+    /// point.
+    #[test]
+    fn a_cell_is_split_where_contacts_move_most() {
+        let family = family_on_a_step();
+        let radius = family.radius;
+        let tilted = Touch {
+            normals: Normals {
+                bisector: Vector::new(0.6, 0.8),
+                ..on_level().normals
+            },
+            ..on_level()
+        };
+        let on_edge = Touch {
+            normals: Normals {
+                is_on_face: false,
+                ..on_level().normals
+            },
+            ..on_level()
+        };
+        let half_reach = 0.5 * family.reach;
+        for (widths, touches, number, moved) in [
+            ([0.4, 0.3, 0.0], vec![tilted], 0, 0.4),
+            ([0.2, 0.3, 0.0], vec![tilted], 1, 0.3),
+            ([0.2, 0.3, 0.31 / half_reach], vec![tilted], 2, 0.31),
+            ([0.2, 0.3, 0.29 / half_reach], vec![tilted], 1, 0.3),
+            // Along level ground everything stays as it is, unless a wheel may leave it.
+            ([0.4, 0.3, 0.0], vec![on_level()], 1, 0.3),
+            ([0.4, 0.3, 0.0], vec![on_level(), tilted], 0, 0.4),
+            ([0.4, 0.3, 0.0], vec![on_level(), on_edge], 0, 0.4),
+            // Three hundredths of a radius up or down are little.
+            (
+                [0.4, 0.031 * radius, 0.0],
+                vec![on_level()],
+                1,
+                0.031 * radius,
+            ),
+            ([0.4, 0.029 * radius, 0.0], vec![on_level()], 0, 0.4),
+        ] {
+            let (found, size) = family.widest(&cell(widths), &touches);
+            assert_eq!(found, number, "{widths:?}");
+            assert!((size - moved / radius).abs() < 1e-12, "{widths:?}: {size}");
+        }
+    }
+
+    #[test]
+    fn a_driven_run_is_a_belt_and_a_belly_is_none() {
+        let mut layout = family_on_a_step().layout;
+        assert!(check_wheels(&layout).is_ok());
+        let is_run = |shape: &Outline| matches!(shape, Outline::Flat { .. });
+        let runs = layout.surfaces.iter_mut().filter(|s| is_run(&s.shape));
+        runs.last().expect("it has a belly").grip = Grip::Driven(1.0);
+        let error = check_wheels(&layout).expect_err("it is a belt");
+        assert_eq!(
+            (error.path.as_str(), error.value.as_str()),
+            ("robot.track", "belt")
+        );
+    }
+}

@@ -17,7 +17,10 @@ use crate::jams::contact::{Contact, Posture};
 use crate::jams::setting::Setting;
 use crate::limits::Cancel;
 use crate::robot::Model;
-use crate::scenario::{LineOfWheels, Scenario, ScenarioError, Surface, Terrain, Track, Wheel};
+use crate::scenario::{
+    ClosedSurface, ClosedTrack, LineOfWheels, Scenario, ScenarioError, Surface, Terrain, Track,
+    Wheel,
+};
 use crate::terrain::Ground;
 
 /// [m] Smallest and largest height of the step, and both values of friction.
@@ -74,6 +77,18 @@ pub(super) fn family_on_a_step() -> Family {
     family(&members()).expect("height and friction are in proportion")
 }
 
+/// The same with a belt round their wheels.
+pub(super) fn belts_on_a_step() -> Family {
+    let closed = members().map(|mut scenario| {
+        scenario.robot.track = Track::Closed(ClosedTrack {
+            of: Box::new(scenario.robot.track.clone()),
+            surface: ClosedSurface::Smooth,
+        });
+        scenario
+    });
+    family(&closed).expect("height and friction are in proportion")
+}
+
 /// A cell of one pose, at these shares of the parameters' ranges.
 fn cell_at(posture: &Posture, shares: &Shares) -> Cell {
     let mut cell = Cell::ZERO;
@@ -113,7 +128,7 @@ fn posture(point: &Cell) -> Posture {
 }
 
 /// The poses on three contacts at the middle of the ranges, with their contacts.
-fn stands(family: &Family, shares: &Shares) -> (Setting, Vec<(Posture, Vec<usize>)>) {
+pub(super) fn stands(family: &Family, shares: &Shares) -> (Setting, Vec<(Posture, Vec<usize>)>) {
     let cancel = Cancel::default();
     let setting = family
         .setting(shares, &cancel)

@@ -7,7 +7,6 @@ use crate::jams::certify::found::{Region, SearchEffort};
 use crate::jams::certify::regions::Pair;
 use crate::jams::layout::Layout;
 use crate::jams::places::{Facing, Place};
-use crate::scenario::{ClosedSurface, ClosedTrack};
 
 fn ends(place: &Place) -> [Vector; 2] {
     match place.shape {
@@ -216,14 +215,7 @@ fn a_parameter_may_move_the_centre_of_mass_in_proportion_alone() {
 /// Wheels in a row jam at some heights and not at others, so the ranges are divided as far as allowed.
 #[test]
 fn no_region_is_smaller_than_asked_for_and_together_they_are_all() {
-    let closed = members().map(|mut scenario| {
-        scenario.robot.track = Track::Closed(ClosedTrack {
-            of: Box::new(scenario.robot.track.clone()),
-            surface: ClosedSurface::Smooth,
-        });
-        scenario
-    });
-    let belt = family(&closed).expect("height and friction are in proportion");
+    let belt = belts_on_a_step();
     for smallest in [1.0, 0.5] {
         let pair = Pair {
             wheels: family_on_a_step(),
