@@ -35,6 +35,21 @@ impl Budget {
         })
     }
 
+    /// So many bytes.
+    #[cfg(test)]
+    pub(crate) fn of(bytes: u64) -> Self {
+        Self {
+            limit: bytes,
+            left: AtomicU64::new(bytes),
+        }
+    }
+
+    /// Bytes that are taken.
+    #[cfg(test)]
+    pub(crate) fn taken(&self) -> u64 {
+        self.limit - self.left.load(Ordering::Relaxed)
+    }
+
     /// Checks that so many bytes are left.
     ///
     /// # Errors
@@ -185,10 +200,7 @@ mod tests {
 
     #[test]
     fn what_is_taken_is_gone_until_it_is_given_back() {
-        let budget = Budget {
-            limit: 100,
-            left: AtomicU64::new(100),
-        };
+        let budget = Budget::of(100);
         assert!(budget.take("a run", 70).is_ok());
         let refused = budget.take("a run", 40).expect_err("30 bytes are left");
         assert!(matches!(
@@ -206,10 +218,7 @@ mod tests {
 
     #[test]
     fn rows_take_what_they_have_room_for_and_no_more() {
-        let budget = Budget {
-            limit: 10_000,
-            left: AtomicU64::new(10_000),
-        };
+        let budget = Budget::of(10_000);
         let mut rows = Rows::new(&budget, 8);
         let mut column: Vec<f64> = Vec::new();
         for row in 0..200 {
@@ -217,10 +226,9 @@ mod tests {
             made.expect("there is room");
             column.push(0.0);
         }
-        let taken = |budget: &Budget| 10_000 - budget.left.load(Ordering::Relaxed);
-        assert_eq!(taken(&budget), 8 * column.capacity() as u64);
+        assert_eq!(budget.taken(), 8 * column.capacity() as u64);
         rows.shrink(column.len());
-        assert_eq!(taken(&budget), 8 * 200);
+        assert_eq!(budget.taken(), 8 * 200);
         let too_many = rows.make_room(2000, |_| unreachable!("the budget has no room"));
         assert!(too_many.is_err());
     }

@@ -104,14 +104,12 @@ impl ValidScenario {
             cancel.check()?;
             let varied = vary(row);
             if let Ok(own) = &varied
-                && !Arc::ptr_eq(&own.ground, &self.ground)
+                && let Some(bytes) = own.bytes_beside(self)
             {
                 let budget = match &budget {
                     Some(budget) => budget,
                     None => budget.insert(Budget::new()?),
                 };
-                let points = own.ground.lanes.iter().map(|lane| lane.points.len() as u64);
-                let bytes = points.sum::<u64>() * BYTES_A_KEPT_CORNER;
                 budget.take("the grounds of planned runs", bytes)?;
             }
             found.push(varied);
@@ -183,6 +181,16 @@ impl ValidScenario {
             position,
             warnings,
         })
+    }
+
+    /// Bytes of its ground, unless that is also the ground of another scenario.
+    fn bytes_beside(&self, other: &Self) -> Option<u64> {
+        if Arc::ptr_eq(&self.ground, &other.ground) {
+            return None;
+        }
+        let lanes = self.ground.lanes.iter();
+        let points: u64 = lanes.map(|lane| lane.points.len() as u64).sum();
+        Some(points * BYTES_A_KEPT_CORNER)
     }
 
     fn has_ground_of(&self, scenario: &Scenario) -> bool {

@@ -60,6 +60,112 @@ fn a_belt_on_level_ground_hardly_slips() {
     assert!(deepest > 1e-8 && deepest < 1e-6, "{deepest} m");
 }
 
+/// Room doubles from 64 rows on, of samples and of contacts. One of 65 samples is the first with more.
+#[test]
+fn what_a_run_records_is_taken_from_its_budget() {
+    let checked = ValidScenario::new(&level()).expect("it is valid");
+    let mut simulation = Simulation::new(&checked);
+    let budget = Budget::of(1 << 20);
+    let record = Record {
+        sample_interval: 1e-3,
+        ..Record::default()
+    };
+    let mut recorder = Recorder::new(&simulation, record, &budget).expect("it fits");
+    let columns = recorder.columns;
+    let of_samples = |rows: u64| rows * Trace::bytes(columns);
+    assert_eq!(budget.taken(), of_samples(64));
+    for (time, rows) in [(0.063, 64), (0.064, 128)] {
+        while simulation.time() < time {
+            simulation.step_until(time).expect("the state stays finite");
+            recorder.step(&simulation).expect("it fits");
+        }
+        let contacts = recorder.contacts.time.len() as u64;
+        assert!(contacts > 64, "{contacts}");
+        let of_contacts = contacts.next_power_of_two() * ContactTable::bytes(columns);
+        assert_eq!(budget.taken(), of_samples(rows) + of_contacts, "{time} s");
+    }
+    let too_little = Budget::of(of_samples(64) - 1);
+    assert!(Recorder::new(&simulation, record, &too_little).is_err());
+}
+
+/// It accelerates at 0.2 m/s^2. The samples are those of all multiples of 0.1 s, of the begin and of the end.
+#[test]
+fn a_record_may_begin_and_end_between_two_samples() {
+    let checked = ValidScenario::new(&level()).expect("it is valid");
+    let mut simulation = Simulation::new(&checked);
+    let advance = |simulation: &mut Simulation, time: f64| {
+        let left = time - simulation.time();
+        simulation.advance(left).expect("the state stays finite");
+    };
+    advance(&mut simulation, 0.14);
+    let budget = Budget::of(1 << 20);
+    let record = Record {
+        sample_interval: 0.1,
+        ..Record::default()
+    };
+    let mut recorder = Recorder::new(&simulation, record, &budget).expect("it fits");
+    while simulation.time() < 0.33 {
+        simulation.step_until(0.33).expect("the state stays finite");
+        recorder.step(&simulation).expect("it fits");
+    }
+    let (trace, contacts) = recorder.finish(&simulation).expect("it fits");
+    let expected = [0.14, 0.2, 0.3, 0.33];
+    assert_eq!(trace.time.len(), expected.len());
+    for (k, time) in expected.into_iter().enumerate() {
+        assert!((trace.time[k] - time).abs() < 1e-9, "{:?}", trace.time);
+        let (speed, way) = (0.2 * time, 0.1 * time * time);
+        assert!((trace.drive_speeds[k] - speed).abs() < 2e-3, "{time} s");
+        assert!((trace.drive_positions[k] - way).abs() < 1e-3, "{time} s");
+        if k > 0 {
+            // Robot and track, however long the interval is.
+            let force = trace.drive_force[k];
+            assert!(
+                (force - (21.2 + 2.4) * 0.2).abs() < 0.1,
+                "{force} N at {time} s"
+            );
+            assert_eq!(trace.drive_forces[k].to_bits(), force.to_bits());
+            let bears: f64 = (contacts.time.iter().zip(&contacts.normal_force))
+                .filter(|(at, _)| (**at - time).abs() < 1e-9)
+                .map(|(_, force)| force)
+                .sum();
+            assert!((bears - 21.2 * 9.81).abs() < 1.0, "{bears} N at {time} s");
+        }
+    }
+    // What is recorded is kept, and nothing beyond it.
+    let columns = Columns::of(simulation.model());
+    let rows = contacts.time.len() as u64;
+    let kept = 4 * Trace::bytes(columns) + rows * ContactTable::bytes(columns);
+    assert_eq!(budget.taken(), kept);
+}
+
+/// In 2.5 s there are three intervals of 1 s, and both ends.
+#[test]
+fn a_batch_asks_for_all_samples_of_its_runs() {
+    let mut scenario = level();
+    scenario.duration = 2.5;
+    let record = |sample_interval: f64, history: bool| Record {
+        sample_interval,
+        history,
+        ..Record::default()
+    };
+    assert_eq!(record(1.0, true).samples(&scenario), 3 + 2);
+    let runs = vec![ValidScenario::new(&scenario).expect("it is valid"); 2];
+    let room = batch_budget(&runs, record(1e-12, false), 1);
+    let of_runs = bytes_besides([1000, 1000].into_iter(), 1);
+    assert_eq!(room.expect("nothing is recorded").taken(), of_runs);
+    let refused = batch_budget(&runs, record(1e-12, true), 1);
+    let Err(LimitError::Memory { needed, what, .. }) = refused else {
+        panic!("no machine has that much");
+    };
+    let samples = 2_500_000_000_000 + 2;
+    let of_sample = bytes_of_sample(runs[0].model());
+    assert_eq!(needed, of_runs + 2 * samples * of_sample);
+    assert!(
+        what.starts_with("a batch of 2 runs sampled every"),
+        "{what}"
+    );
+}
+
 /// A thread has a stack of 2 MiB, and 600 bytes for each corner of the largest ground; a run gives back 64 KiB, and 128
 /// bytes for each corner of its own.
 #[test]

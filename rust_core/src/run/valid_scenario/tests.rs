@@ -112,6 +112,35 @@ fn what_differs_is_built_for_itself_and_as_it_would_be_alone() {
     }
 }
 
+/// A step has two corners and two ends of the ground, and 300 bytes for each.
+#[test]
+fn a_varied_scenario_takes_room_for_a_ground_of_its_own_only() {
+    let first = opened(&engineer(), None);
+    let varied = |terrain: Terrain| {
+        let mut variant = engineer();
+        variant.start.approach = 0.2;
+        variant.terrain = terrain;
+        opened(&variant, Some(&first)).bytes_beside(&first)
+    };
+    assert_eq!(varied(engineer().terrain), None);
+    let step = Terrain::Step {
+        height: 0.05,
+        surface: Surface::sharp(0.9),
+    };
+    assert_eq!(varied(step.clone()), Some(4 * 300));
+    // A lane for each track, and one for the belly.
+    let lower = Terrain::Step {
+        height: 0.04,
+        surface: Surface::sharp(0.9),
+    };
+    let lanes = Terrain::Lanes {
+        left: Box::new(step.clone()),
+        right: Box::new(lower),
+        middle: Some(Box::new(step)),
+    };
+    assert_eq!(varied(lanes), Some(3 * 4 * 300));
+}
+
 #[test]
 fn the_corners_of_lanes_are_those_of_the_tracks_and_of_the_belly() {
     let lane = |count: u32, edge_radius| {
