@@ -124,3 +124,60 @@ impl Work {
         finished.map_or_else(|_| Vec::new(), |mut finished| mem::take(&mut *finished))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::simulate;
+    use crate::run::trials::tests::engineer;
+
+    /// So many runs of this duration [s].
+    fn runs(count: usize, duration: f64) -> Vec<ValidScenario> {
+        let mut scenario = engineer();
+        scenario.duration = duration;
+        vec![ValidScenario::new(&scenario).expect("it is valid"); count]
+    }
+
+    #[test]
+    fn each_run_of_a_batch_is_handed_over_once_however_many_threads_there_are() {
+        let scenarios = runs(3, 0.01);
+        let alone = simulate(&scenarios[0], Record::summary()).expect("it stays finite");
+        for threads in [0, 1, 2, 9] {
+            let mut all = Vec::new();
+            let done = simulate_many(&scenarios[..], threads, Record::summary(), |finished| {
+                all.extend(finished);
+                Progress::Continue
+            });
+            done.expect("there is room");
+            all.sort_by_key(|(place, _)| *place);
+            assert_eq!(all.len(), 3, "{threads} threads");
+            for (place, (number, run)) in all.iter().enumerate() {
+                let run = run.as_ref().expect("it stays finite");
+                assert_eq!(place, *number);
+                assert_eq!(
+                    run.metrics.final_x.to_bits(),
+                    alone.metrics.final_x.to_bits()
+                );
+            }
+        }
+        let done = simulate_many(&scenarios[..0], 2, Record::summary(), |finished| {
+            assert!(finished.is_empty());
+            Progress::Continue
+        });
+        assert!(done.is_ok());
+    }
+
+    /// Ten seconds take longer than the first look.
+    #[test]
+    fn a_batch_that_is_stopped_hands_over_only_what_is_finished() {
+        let mut looks = 0;
+        let done = simulate_many(runs(4, 10.0), 1, Record::summary(), |finished| {
+            looks += 1;
+            assert!(finished.is_empty());
+            Progress::Stop
+        });
+        done.expect("there is room");
+        // One that stops it, and a last one.
+        assert_eq!(looks, 2);
+    }
+}

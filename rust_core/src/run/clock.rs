@@ -19,3 +19,18 @@ impl Clock {
             .map_or(f64::NAN, |begin| begin.elapsed().as_secs_f64())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use super::*;
+
+    #[test]
+    fn a_clock_runs_while_others_wait() {
+        let clock = Clock::start();
+        std::thread::sleep(Duration::from_millis(2));
+        let elapsed = clock.elapsed();
+        assert!((2e-3..0.9).contains(&elapsed), "{elapsed} s");
+    }
+}

@@ -149,6 +149,7 @@ fn stays(mut robot: Simulation, jam: &Jam, cancel: &Cancel) -> Result<bool, Erro
 mod tests {
     use super::*;
     use crate::geometry::Vector;
+    use crate::run::trials::tests::wheels;
     use crate::scenario::{ForceSupport, ForceTrack, Scenario, Surface, Terrain, Track};
 
     /// The Engineer without motor force on skids of some friction, on ground that rises by a tenth.
@@ -177,6 +178,33 @@ mod tests {
             contacts: Vec::new(),
         };
         (robot, jam)
+    }
+
+    /// On as many threads as there are cores.
+    #[test]
+    fn the_ranges_of_several_robots_come_in_their_order() {
+        let of = |count| ValidScenario::new(&wheels(count, 0.08)).expect("it is valid");
+        let scenarios = [3, 4, 3, 5, 4].map(of);
+        let cancel = Cancel::default();
+        let bits = |found: &JamRanges| -> Vec<[u64; 3]> {
+            let of = |(range, _): &(JamRange, _)| {
+                let [low, high] = range.friction;
+                [range.position.x, low, high].map(f64::to_bits)
+            };
+            found.iter().map(of).collect()
+        };
+        let all = jam_ranges(&scenarios, 1.0, &cancel).expect("their jams are known");
+        assert_eq!(all.len(), scenarios.len());
+        for (scenario, found) in scenarios.iter().zip(&all) {
+            let alone = ranges_of(scenario, 1.0, &cancel).expect("its jams are known");
+            assert_eq!(bits(found), bits(&alone));
+        }
+        assert!(!all[1].is_empty() && bits(&all[0]) != bits(&all[1]));
+        assert!(
+            jam_ranges(&[], 1.0, &cancel)
+                .expect("there is nothing to do")
+                .is_empty()
+        );
     }
 
     /// Of a slope of 0.1, a friction of 0.1 and half a hundredth more bears no push of a hundredth of the weight backwards.

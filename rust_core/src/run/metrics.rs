@@ -218,8 +218,9 @@ fn explained(simulation: &Simulation, speed: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::dynamics::FlipperCommand;
     use crate::run::ValidScenario;
-    use crate::scenario::{Scenario, Track};
+    use crate::scenario::{End, Scenario, Track};
 
     /// The Engineer on a belt, or on a chain of 40 shoes of 60 g.
     fn simulation(on_chain: bool) -> Simulation {
@@ -279,6 +280,48 @@ mod tests {
         // At rest, with a track that runs at the command.
         let found = speed(&running, 0.3);
         assert!((found - 0.4).abs() < 1e-12, "{found} m/s");
+    }
+
+    /// Its arms turn by 1 rad/s.
+    #[test]
+    fn tips_of_arms_are_as_fast_as_they_turn_and_as_far_as_the_robot_reaches() {
+        let text = include_str!("../../../tests/scenarios/engineer_flippers_step.json");
+        let mut scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+        (scenario.drive.gait, scenario.drive.speed) = (None, 0.0);
+        let mut simulation = Simulation::new(&ValidScenario::new(&scenario).expect("it is valid"));
+        let up = FlipperCommand::Rate(1.0);
+        simulation
+            .command_flippers(End::Front, up)
+            .expect("it has arms");
+        simulation.advance(0.3).expect("the state stays finite");
+        let [near, far] = [0.5, 2.0].map(|reach| speed(&simulation, reach));
+        // The chassis hardly moves.
+        assert!(
+            (near - 0.5).abs() < 0.02 && (far - 2.0).abs() < 0.08,
+            "{near} {far} m/s"
+        );
+    }
+
+    /// All of its weight presses a contact in by 0.25 um, and it accelerates at 0.2 m/s^2.
+    #[test]
+    fn a_belt_on_the_ground_is_not_deep_and_no_faster_than_it_drives() {
+        let mut simulation = simulation(false);
+        let mut seen = Sinkage::from(&simulation);
+        while simulation.time() < 0.3 {
+            simulation.step_until(0.3).expect("the state stays finite");
+            seen.step(&simulation);
+        }
+        assert!(
+            seen.deepest > 1e-8 && seen.deepest < 1e-6,
+            "{} m",
+            seen.deepest
+        );
+        // The robot and its track, each at up to 0.06 m/s.
+        assert!((seen.fastest - 0.12).abs() < 0.01, "{} m/s", seen.fastest);
+        // At the start and every 0.05 s; the last may miss the end by rounding.
+        assert!((6..=7).contains(&seen.looks));
+        let later = Sinkage::from(&simulation);
+        assert!(!later.is_anew && (5..=6).contains(&later.looks));
     }
 
     /// The contacts have 1000 Hz: 6283.2 /s. On a belt, a contact has the stiffness for 21.2 kg, and bears 207.97 N of

@@ -164,6 +164,8 @@ mod tests {
     #![allow(clippy::float_cmp)] // lengths are handed on
 
     use super::*;
+    use crate::geometry::Vector;
+    use crate::robot::{Model, Shape};
 
     const ACCURACY: f64 = 1e-6;
     const RULE: StepRule = StepRule::Accuracy {
@@ -179,6 +181,37 @@ mod tests {
         };
         let judged = control.judge(RULE, h, ratio * ACCURACY);
         (control, judged)
+    }
+
+    /// Wheels of 30 mm at 1.39 m/s turn by 46.3 rad/s, and by 0.7 rad in 15.1 ms.
+    #[test]
+    fn nothing_may_turn_by_more_than_0_7_rad_in_a_step() {
+        let text = include_str!("../../../tests/scenarios/engineer_flippers_step.json");
+        let mut scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+        let model = Model::new(&scenario.robot).expect("it can be built");
+        let parts = [0.06, 0.03, 0.04].map(|radius| Part {
+            shape: Shape::Disc {
+                center: Vector::ZERO,
+                radius,
+            },
+            ..model.parts[0].clone()
+        });
+        for (max_speed, rate_limit, longest) in [
+            (1.39, 1.0, 0.7 * 0.03 / 1.39),
+            (1.39, 50.0, 0.7 / 50.0),
+            (0.1, 1.0, LONGEST.value()),
+        ] {
+            scenario.robot.drivetrain.max_speed = max_speed;
+            let arms = scenario.robot.flippers.as_mut().expect("it has some");
+            arms.rate_limit = rate_limit;
+            let StepRule::Accuracy { longest: found, .. } = StepRule::of(&scenario, &parts) else {
+                panic!("it has an accuracy");
+            };
+            assert!((found - longest).abs() < 1e-15, "{found} s");
+        }
+        (scenario.solver.accuracy, scenario.solver.time_step) = (None, Some(2e-3));
+        let rule = StepRule::of(&scenario, &parts);
+        assert!(matches!(rule, StepRule::Fixed(step) if step == 2e-3));
     }
 
     #[test]

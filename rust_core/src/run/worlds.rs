@@ -279,7 +279,7 @@ impl World {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenario::Terrain;
+    use crate::scenario::{Ends, Scenario, Terrain};
 
     /// Both stand 0.2 m before a step of 8 cm, each with as many distances as are asked for.
     #[test]
@@ -301,6 +301,65 @@ mod tests {
         for (found, expected) in found.iter().zip(row.iter().cycle()) {
             assert!((found - expected).abs() < 1e-12, "{found} m");
         }
+    }
+
+    #[test]
+    fn angles_of_arms_are_those_of_the_front_and_of_the_rear() {
+        let text = include_str!("../../../tests/scenarios/engineer_flippers_step.json");
+        let mut scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+        scenario.robot.moment_of_inertia = 1.0;
+        scenario.drive.gait = None;
+        let angles = |ends: Option<Ends>, scenario: &mut Scenario| {
+            match (ends, &mut scenario.robot.flippers) {
+                (Some(ends), Some(arms)) => (arms.ends, arms.angle) = (ends, 0.8),
+                _ => scenario.robot.flippers = None,
+            }
+            let checked = ValidScenario::new(scenario).expect("it is valid");
+            let worlds = Worlds::new(vec![checked], &Cancel::default());
+            let states = worlds.expect("there is room").states();
+            let found = states[0].flipper_angles;
+            found.map(|angle| (angle - 0.8).abs() < 1e-12)
+        };
+        assert_eq!(angles(Some(Ends::Both), &mut scenario), [true, true]);
+        assert_eq!(angles(Some(Ends::Front), &mut scenario), [true, false]);
+        assert_eq!(angles(Some(Ends::Rear), &mut scenario), [false, true]);
+        assert_eq!(angles(None, &mut scenario), [false, false]);
+    }
+
+    #[test]
+    fn if_one_command_is_refused_no_world_has_another() {
+        let text = include_str!("../../../tests/scenarios/engineer_belt_step.json");
+        let scenario = ValidScenario::from_json(text).expect("the shared scenario is valid");
+        let worlds = Worlds::new(vec![scenario; 2], &Cancel::default());
+        let mut worlds = worlds.expect("there is room");
+        let push = |force: f64| ByHand {
+            speed: None,
+            flippers: [None; 2],
+            push: Some(force),
+        };
+        let pushes = |worlds: &Worlds| [0, 1].map(|k| lock(&worlds.worlds[k]).simulation.push());
+        worlds
+            .command(&[push(1.0), push(2.0)])
+            .expect("they are forces");
+        assert_eq!(
+            pushes(&worlds).map(f64::to_bits),
+            [1.0, 2.0].map(f64::to_bits)
+        );
+        assert!(worlds.command(&[push(3.0), push(f64::NAN)]).is_err());
+        assert_eq!(
+            pushes(&worlds).map(f64::to_bits),
+            [1.0, 2.0].map(f64::to_bits)
+        );
+        // Of one that cannot go on, commands do not matter.
+        let failed = worlds.worlds[1].get_mut().expect("nobody panicked");
+        failed.error = Some(Error::Internal("a fault".to_owned()));
+        worlds
+            .command(&[push(3.0), push(f64::NAN)])
+            .expect("it has failed");
+        assert_eq!(
+            pushes(&worlds).map(f64::to_bits),
+            [3.0, 2.0].map(f64::to_bits)
+        );
     }
 
     #[test]

@@ -432,6 +432,28 @@ mod push_tests {
     }
 
     #[test]
+    fn only_a_push_that_can_be_commanded_is_taken_from_a_snapshot() {
+        let fits = |from: f64, to: f64, since: f64, rise: f64| {
+            let push = Push {
+                from,
+                to,
+                since,
+                rise,
+            };
+            push.fits()
+        };
+        assert!(Push::default().fits() && fits(1e15, -1e15, -3.0, 1e9));
+        for force in [1.1e15, -1.1e15, f64::INFINITY, f64::NAN] {
+            assert!(!fits(force, 0.0, 0.0, 0.0) && !fits(0.0, force, 0.0, 0.0));
+            assert!(!Push::may_be(force));
+        }
+        assert!(!fits(0.0, 0.0, f64::NAN, 0.0) && !fits(0.0, 0.0, f64::INFINITY, 0.0));
+        for rise in [-1e-9, f64::INFINITY, f64::NAN] {
+            assert!(!fits(0.0, 0.0, 0.0, rise), "{rise} s");
+        }
+    }
+
+    #[test]
     fn a_push_without_a_rise_is_there_at_once() {
         let push = Push::default().raised(5.0, 1.0, 0.0);
         assert_eq!([0.5, 1.0].map(|time| push.at(time)), [0.0, 5.0]);
@@ -484,5 +506,43 @@ mod tests {
             driver.commanded(&before, &speeds).speed(&speeds, 3.0),
             Some(0.4)
         );
+    }
+
+    #[test]
+    fn arms_are_held_at_the_last_angle_that_is_due() {
+        let Some(Gait::Hold(hold)) = drive(&[], &[[1.0, 0.6], [2.0, 0.7]]).gait else {
+            panic!("they are held");
+        };
+        for (time, most, angle) in [
+            (0.9, None, 0.5),
+            (1.0, None, 0.6),
+            (1.9, None, 0.6),
+            (5.0, None, 0.7),
+            (5.0, Some(1), 0.6),
+            (5.0, Some(0), 0.5),
+            (0.9, Some(2), 0.5),
+        ] {
+            let found = hold.angle_at(time, most);
+            assert_eq!(found.to_bits(), f64::to_bits(angle), "{time} s {most:?}");
+        }
+    }
+
+    #[test]
+    fn only_what_commands_lead_to_is_taken_from_a_snapshot() {
+        let drive = drive(&[[1.0, 0.2], [9.0, 0.3]], &[]);
+        let fits = |change: fn(&mut Driver)| {
+            let mut driver = Driver::default();
+            change(&mut driver);
+            driver.fits(&drive)
+        };
+        assert!(fits(|_| {}) && fits(|d| d.entries = 2) && fits(|d| d.nose_down_since = Some(0.3)));
+        assert!(!fits(|d| d.entries = 3));
+        assert!(!fits(|d| d.nose_down_since = Some(f64::NAN)));
+        assert!(fits(|d| d.take(1, FlipperCommand::Angle(0.3))));
+        for end in [0, 1] {
+            let mut driver = Driver::default();
+            driver.take(end, FlipperCommand::Angle(f64::INFINITY));
+            assert!(!driver.fits(&drive), "{end}");
+        }
     }
 }

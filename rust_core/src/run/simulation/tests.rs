@@ -9,7 +9,7 @@ use crate::run::ByHand;
 use crate::run::trials::tests::engineer;
 use crate::scenario::{
     ChainMechanism, End, Ends, Engine, ForceSupport, ForceTrack, GearWheel, LineOfWheels,
-    SegmentalTrack, ShoeShape, Surface, Terrain, Track, Wheel,
+    SegmentalTrack, ShoeShape, Surface, Terrain, TorqueSharing, Track, Wheel,
 };
 
 fn run_until(simulation: &mut Simulation, time: f64) {
@@ -471,4 +471,274 @@ fn a_robot_that_drives_straight_on_has_a_path_as_long_as_its_way() {
         (path - way).abs() < 1e-4 * way && way > 0.05,
         "{path} {way}"
     );
+}
+
+/// The Engineer on level ground, at rest with arms at this end and angle [rad], after a millisecond.
+fn on_arms(ends: Ends, angle: f64) -> Simulation {
+    let text = include_str!("../../../../tests/scenarios/engineer_flippers_step.json");
+    let mut scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+    let flippers = scenario.robot.flippers.as_mut().expect("it has some");
+    (flippers.ends, flippers.angle) = (ends, angle);
+    scenario.drive.gait = None;
+    scenario.drive.speed = 0.0;
+    scenario.start.approach = 1.0;
+    let checked = ValidScenario::new(&scenario).expect("it is valid");
+    let mut simulation = Simulation::new(&checked);
+    run_until(&mut simulation, 1e-3);
+    simulation
+}
+
+/// The track of the chassis bears, as far along them as they are long.
+#[test]
+fn arms_that_are_folded_over_the_chassis_touch_nothing() {
+    for end in [End::Front, End::Rear] {
+        let ends = if end == End::Front {
+            Ends::Front
+        } else {
+            Ends::Rear
+        };
+        let simulation = on_arms(ends, 3.0);
+        let pivot = simulation.reading().position + simulation.model().flippers[0].pivot;
+        let bears = simulation.loaded().iter().any(|contact| {
+            let behind = end.sign() * (pivot - contact.point).x;
+            behind > 0.3 && contact.normal_force > 1.0
+        });
+        assert!(bears && !simulation.flipper_touches(end), "{end:?}");
+    }
+}
+
+/// Their tips of 37 mm are 10 um over the ground on which their roots of 64 mm stand, 0.34 m away.
+#[test]
+fn an_arm_that_hovers_over_the_ground_does_not_touch_it() {
+    let angle = -libm::asin((0.064 - 0.037 - 1e-5) / 0.34);
+    let simulation = on_arms(Ends::Front, angle);
+    let ahead = simulation.reading().position.x + 0.4;
+    let mut of_tip = simulation.loaded().iter().filter(|l| l.point.x > ahead);
+    assert!(of_tip.all(|contact| contact.normal_force.to_bits() == 0));
+    assert!(
+        simulation.loaded().iter().any(|l| l.point.x > ahead),
+        "it is near"
+    );
+    assert!(!simulation.flipper_touches(End::Front));
+}
+
+/// What does not change is shared, and what does is built.
+#[test]
+fn a_variant_of_a_stop_stands_on_its_own_ground_only_if_that_differs() {
+    let checked = ValidScenario::new(&skids()).expect("it is valid");
+    let simulation = Simulation::new(&checked);
+    let mut variant = skids();
+    variant.robot.drivetrain.max_torque = 1.0;
+    let same = simulation.varied(&variant, true).expect("it can be built");
+    assert!(Arc::ptr_eq(&same.ground, &simulation.ground));
+    variant.terrain.scale_friction(0.5);
+    let other = simulation.varied(&variant, true).expect("it can be built");
+    let friction = |simulation: &Simulation| simulation.ground.lanes[0].friction.most().coefficient;
+    let share = friction(&other) / friction(&simulation);
+    assert!((share - 0.5).abs() < 1e-12, "{share}");
+}
+
+/// Speeds change at 1 s and 2 s, angles of arms at 1.5 s, and a push has risen at 1.2 s.
+#[test]
+fn a_command_changes_next_at_an_entry_of_a_schedule_or_when_it_is_reached() {
+    let text = include_str!("../../../../tests/scenarios/engineer_flippers_step.json");
+    let mut value: serde_json::Value = serde_json::from_str(text).expect("it is JSON");
+    value["drive"]["schedule"] = serde_json::json!([[1.0, 0.2], [2.0, 0.1]]);
+    value["drive"]["gait"] = serde_json::json!({
+        "kind": "hold", "angle": 0.8, "schedule": [[1.5, 0.7]], "front": null, "rear": null,
+    });
+    let checked = ValidScenario::from_json(&value.to_string()).expect("it is valid");
+    let mut simulation = Simulation::new(&checked);
+    let command = checked.scenario().drive.speed;
+    let rate = checked.scenario().robot.drivetrain.max_acceleration;
+    let next = |simulation: &mut Simulation, time: f64| {
+        simulation.time = time;
+        simulation.next_change()
+    };
+    // At rest it takes its ramp; here that is longer than a second.
+    simulation.commands.speed = 1.3 * rate;
+    for (time, change) in [(0.0, 1.0), (1.0, 1.5), (1.5, 2.0), (2.0, 3.3)] {
+        let found = next(&mut simulation, time);
+        assert!((found - change).abs() < 1e-12, "{found} s, {change} s");
+    }
+    simulation.commands.speed = command;
+    simulation.set_point = command;
+    assert!(next(&mut simulation, 2.5).is_infinite());
+    simulation.time = 0.7;
+    simulation.raise_push(1.0, 0.5).expect("it is a force");
+    for (time, change) in [(0.8, 1.0), (1.1, 1.2), (1.2, 1.5)] {
+        let found = next(&mut simulation, time);
+        assert!((found - change).abs() < 1e-12, "{found} s, {change} s");
+    }
+}
+
+/// A stop counts from as many windows on as the criteria say, after the push has risen.
+#[test]
+fn a_push_leaves_a_robot_its_windows_to_get_away() {
+    let scenario = skids();
+    let checked = ValidScenario::new(&scenario).expect("it is valid");
+    let mut simulation = Simulation::new(&checked);
+    while !simulation.is_over() {
+        simulation.step().expect("the state stays finite");
+    }
+    let now = simulation.time();
+    simulation.raise_push(1.0, 0.5).expect("it is a force");
+    let windows = f64::from(scenario.criteria.stationary_windows);
+    let end = now + 0.5 + windows * simulation.stop_window();
+    for (time, is_over) in [(now, false), (end - 1e-6, false), (end + 1e-6, true)] {
+        simulation.time = time;
+        assert_eq!(simulation.is_over(), is_over, "{time} s");
+    }
+}
+
+/// Relative to a chassis that turns nose up by 0.3 rad/s; upwards is clockwise at the rear.
+#[test]
+fn rates_and_torques_of_arms_count_upwards_at_either_end() {
+    let text = include_str!("../../../../tests/scenarios/engineer_flippers_step.json");
+    let mut scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+    scenario.robot.flippers.as_mut().expect("it has some").ends = Ends::Both;
+    scenario.robot.moment_of_inertia = 1.0;
+    let checked = ValidScenario::new(&scenario).expect("it is valid");
+    let mut simulation = Simulation::new(&checked);
+    simulation.state.angular_velocity = 0.3;
+    for (arm, (rate, torque)) in simulation
+        .state
+        .flippers
+        .iter_mut()
+        .zip([(1.0, 5.0), (-1.0, -7.0)])
+    {
+        (arm.rate, arm.torque) = (rate, torque);
+    }
+    let close = |found: Vec<f64>, expected: [f64; 2]| {
+        assert_eq!(found.len(), 2);
+        let off = found.iter().zip(expected).map(|(a, b)| (a - b).abs());
+        assert!(off.fold(0.0, f64::max) < 1e-15, "{found:?}");
+    };
+    close(simulation.flipper_rates().collect(), [0.7, 1.3]);
+    close(simulation.flipper_torques().collect(), [5.0, 7.0]);
+    // Raised to 0.8 rad at either end.
+    close(simulation.flipper_angles().collect(), [0.8, 0.8]);
+}
+
+/// 21.2 kg of the robot move, its track and two rotors turn; the rotors turn over the chassis.
+#[test]
+fn energy_is_that_of_motion_of_turning_parts_and_of_height() {
+    let mut scenario = engineer();
+    scenario.robot.drivetrain.rotor_inertia = 0.02;
+    let checked = ValidScenario::new(&scenario).expect("it is valid");
+    let gained = |change: fn(&mut State)| {
+        let mut simulation = Simulation::new(&checked);
+        let before = simulation.energy();
+        change(&mut simulation.state);
+        simulation.energy() - before
+    };
+    let robot = &scenario.robot;
+    let model = checked.model();
+    let (track, rotors) = (model.drive_inertia(0), model.rotor_inertia(0));
+    assert!(track > 1e-3 && rotors > 1e-3);
+    let mass = robot.mass;
+    let chassis = robot.moment_of_inertia - track;
+    for (found, expected) in [
+        (gained(|s| s.velocity = Vector::new(3.0, 4.0)), 12.5 * mass),
+        (gained(|s| s.center.y += 2.0), 2.0 * 9.81 * mass),
+        (gained(|s| s.drives[0].spin = 3.0), 4.5 * (track + rotors)),
+        (
+            gained(|s| s.angular_velocity = 2.0),
+            2.0 * (chassis + rotors),
+        ),
+        // All of it turns, except the rotors.
+        (
+            gained(|s| (s.angular_velocity, s.drives[0].spin) = (2.0, 2.0)),
+            2.0 * robot.moment_of_inertia,
+        ),
+    ] {
+        // Rounding of some hundreds of joules.
+        assert!((found - expected).abs() < 1e-11, "{found} J, {expected} J");
+    }
+}
+
+/// With another centre of mass, which moves otherwise, as the chassis turns.
+#[test]
+fn a_rebuilt_robot_moves_and_turns_as_it_did() {
+    let scenario = engineer();
+    let checked = ValidScenario::new(&scenario).expect("it is valid");
+    let mut simulation = Simulation::new(&checked);
+    run_until(&mut simulation, 0.05);
+    simulation.state.velocity = Vector::new(0.3, 0.1);
+    simulation.state.angular_velocity = 0.7;
+    simulation.state.drives[0].spin = -4.0;
+    let before = simulation.reading();
+    let mut variant = scenario;
+    variant.robot.center_of_mass = [0.04, 0.05];
+    variant.robot.mass += 1.0;
+    let branch = simulation.branch(&ValidScenario::new(&variant).expect("it is valid"));
+    let now = branch.reading();
+    assert!((now.position - before.position).length() < 1e-12);
+    assert!((now.velocity - before.velocity).length() < 1e-12);
+    assert!((now.angular_velocity - 0.7).abs() < 1e-15);
+    assert!((now.track_speed - before.track_speed).abs() < 1e-12);
+    assert!((now.track_position - before.track_position).abs() < 1e-15);
+    assert!((now.time - 0.05).abs() < 1e-12);
+    let center = branch.center_of_mass() - now.position;
+    let expected = crate::geometry::turned_by(now.chassis_angle)(Vector::new(0.04, 0.05));
+    assert!((center - expected).length() < 1e-12);
+}
+
+/// Its own end does not matter, and a time that it misses by rounding is reached.
+#[test]
+fn a_run_is_replayed_up_to_the_first_step_that_reaches_a_time() {
+    let mut scenario = engineer();
+    scenario.duration = 0.02;
+    let checked = ValidScenario::new(&scenario).expect("it is valid");
+    let mut undisturbed = Simulation::new(&checked);
+    for _ in 0..3 {
+        undisturbed
+            .step_until(0.02)
+            .expect("the state stays finite");
+    }
+    let at = undisturbed.time();
+    assert!(at < 0.02, "{at} s");
+    for time in [at, at - 1e-6, at + 0.9e-9] {
+        let found = Simulation::replayed(&checked, time, &Cancel::default());
+        let found = found.expect("nobody asks it to end");
+        assert_eq!(found.steps(), 3, "{time} s");
+        assert_eq!(bits(&found), bits(&undisturbed));
+    }
+    let found = Simulation::replayed(&checked, 0.03, &Cancel::default());
+    let end = found.expect("nobody asks it to end").time();
+    assert!((end - 0.03).abs() < 1e-9, "{end} s");
+    let cancel = Cancel::default();
+    cancel.ask();
+    assert!(Simulation::replayed(&checked, at, &cancel).is_err());
+}
+
+/// Three wheels, each with its own motor.
+#[test]
+fn the_speed_and_way_of_a_track_are_means_over_its_motors() {
+    let mut scenario = gears(3, 0.05, 0.0);
+    scenario.robot.drivetrain.torque_sharing = TorqueSharing::Wheel;
+    let checked = ValidScenario::new(&scenario).expect("it is valid");
+    let mut simulation = Simulation::new(&checked);
+    assert_eq!(simulation.drives(), 3);
+    for (drive, (position, spin)) in
+        (simulation.state.drives.iter_mut()).zip([(0.1, -1.0), (0.5, -3.0), (0.9, -8.0)])
+    {
+        (drive.position, drive.spin, drive.force) = (position, spin, 2.0 * position);
+    }
+    let now = simulation.reading();
+    assert!((now.track_position - 0.5).abs() < 1e-15);
+    let speeds = [0, 1, 2].map(|drive| simulation.drive_speed(drive));
+    let mean = speeds.iter().sum::<f64>() / 3.0;
+    assert!((now.track_speed - mean).abs() < 1e-15);
+    // Wheels of 64 mm, with tips that reach no farther.
+    assert!((mean - 4.0 * 0.064).abs() < 1e-12, "{mean} m/s");
+    assert!((simulation.drive_force() - 3.0).abs() < 1e-15);
+    assert!(simulation.drive_positions().eq([0.1, 0.5, 0.9]));
+}
+
+#[test]
+fn the_size_of_a_simulation_is_that_of_its_ground_and_its_robot() {
+    let checked = ValidScenario::new(&engineer()).expect("it is valid");
+    // A step has four points; a belt and a belly are two parts.
+    assert_eq!(Simulation::new(&checked).size(), (4, 2));
 }

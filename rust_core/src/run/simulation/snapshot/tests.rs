@@ -253,12 +253,16 @@ fn of_nobody() -> Contact {
 type Spoil = fn(&mut SavedState);
 
 /// Each makes one thing invalid.
-const SPOILS: [(&str, Spoil); 16] = [
+const SPOILS: [(&str, Spoil); 18] = [
     ("time", |m| m.time += 1.0),
     ("step_control", |m| m.step_control = StepControl::never()),
     ("last step", |m| m.last.free = f64::NAN),
     ("velocity before it", |m| {
         m.last.before.velocity.x = f64::NAN;
+    }),
+    ("range of the search", |m| m.last.sight = -1e-9),
+    ("push", |m| {
+        m.commands.push = m.commands.push.raised(f64::NAN, 0.0, 0.0);
     }),
     ("x", |m| m.state.center.x = f64::NAN),
     ("y", |m| m.state.center.y = f64::NAN),

@@ -182,6 +182,84 @@ const SCENARIOS: [&str; 3] = [
     include_str!("../../../../../tests/scenarios/engineer_flippers_step.json"),
 ];
 
+/// A robot that falls at `speed` [m/s], with a contact found there `half` a step [s] later, each up to 8 ms long, at a
+/// gap [m]: whether it is left out, and the room of what is.
+fn is_left_out(speed: f64, half: f64, gap: f64) -> (bool, f64) {
+    let mut simulation = on_gears(0.0);
+    simulation.state.velocity = Vector::new(0.0, -speed);
+    simulation.scenario.solver.prediction_distance = 1e-6;
+    let longest = 8e-3;
+    // Half of what it may move in the next step, and no more than half a millimetre into the ground.
+    let travel = (speed + 2.0 * 9.81 * longest) * longest;
+    let contact = |gap| Contact::new(0, (0, -1), (Vector::ZERO, Vector::Y), gap);
+    let mut attempt = Attempt {
+        contacts: vec![contact(0.9e-6), contact(gap), contact(1.0)],
+        sight: 0.5 * travel - UNSEEN.value(),
+        ..Attempt::default()
+    };
+    let room = simulation.leave_out(&mut attempt, half, speed);
+    let gaps = attempt.contacts.iter().map(|contact| contact.distance);
+    let kept: Vec<f64> = gaps.collect();
+    assert!(
+        kept[0] < 1e-6 && kept.iter().all(|gap| *gap < 1.0),
+        "{kept:?}"
+    );
+    (kept.len() == 1, room)
+}
+
+/// It is where it falls to at its speed in half a step. Forces that pull at most twice as much as gravity must not close
+/// it in this step, nor bring it deeper than half a millimetre by the middle of the next.
+#[test]
+fn a_gap_that_a_fall_at_twice_gravity_leaves_open_is_left_out() {
+    let longest = 8e-3;
+    for (speed, half, is_of_this_step) in [(0.01, 1e-3, true), (0.1, 4e-3, false)] {
+        let closed = |time: f64| speed * (time - half) + 9.81 * time * time;
+        let now = closed(2.0 * half);
+        let later = closed(2.0 * half + 0.5 * longest) - 0.5e-3;
+        assert_eq!(now > later, is_of_this_step);
+        let least = now.max(later);
+        for (gap, is_open) in [(0.999 * least, false), (1.001 * least, true)] {
+            let (found, room) = is_left_out(speed, half, gap);
+            assert_eq!(found, is_open, "{gap} m at {speed} m/s");
+            let gap = if is_open { gap } else { 1.0 };
+            assert!((room - (gap - speed * half)).abs() < 1e-12, "{room} m");
+        }
+    }
+}
+
+/// Half of the way that a part can make in the next step, as that looks in its middle, is the range, and half a millimetre more.
+#[test]
+fn a_search_holds_until_a_part_may_be_half_a_millimetre_beyond_it() {
+    let simulation = on_gears(0.0);
+    for (sight, speed) in [
+        (0.0, 0.0),
+        (1e-3, 0.0),
+        (2e-3, 0.4),
+        (0.02, 1.5),
+        (-1e-4, 0.3),
+    ] {
+        let time = simulation.known_for(sight, speed);
+        let way = (speed + 2.0 * 9.81 * time) * time;
+        assert!(
+            time > 0.0 && (0.5 * way - sight - 0.5e-3).abs() < 1e-15,
+            "{time} s"
+        );
+    }
+}
+
+/// Steps of one length look at all that they find.
+#[test]
+fn steps_of_a_given_length_leave_nothing_out() {
+    let mut simulation = on_gears(0.0);
+    simulation.step_rule = StepRule::Fixed(1e-3);
+    let mut attempt = Attempt {
+        contacts: vec![Contact::new(0, (0, -1), (Vector::ZERO, Vector::Y), 1.0)],
+        ..Attempt::default()
+    };
+    assert!(simulation.leave_out(&mut attempt, 5e-4, 0.0).is_infinite());
+    assert_eq!(attempt.contacts.len(), 1);
+}
+
 #[test]
 fn contacts_that_a_step_leaves_out_stay_open_in_it() {
     for text in SCENARIOS {
