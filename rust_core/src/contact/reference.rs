@@ -175,7 +175,7 @@ mod tests {
     use crate::contact::finder::OwnContact;
     use crate::contact::penetration::depth;
     use crate::draw::Draw;
-    use crate::robot::Model;
+    use crate::robot::{BodyKind, Model, Mount};
     use crate::scenario::{Scenario, Surface};
 
     /// The nearest contact: its distance [m], position and edge.
@@ -244,6 +244,44 @@ mod tests {
                     }
                     (one, other) => panic!("{one:?} {other:?}"),
                 }
+            }
+        }
+    }
+
+    /// The engine refuses polygons without an area.
+    #[test]
+    fn grousers_without_a_thickness_are_a_nanometre_thick_from_root_to_tip() {
+        let gear = Gear {
+            radius: 0.06,
+            root_radius: 0.05,
+            grousers: 6,
+            tip_thickness: 0.0,
+            base_thickness: 0.0,
+            phase: 0.1,
+        };
+        let part = Part {
+            kind: BodyKind::Wheel,
+            shape: Shape::Gear {
+                center: Vector::ZERO,
+                gear,
+            },
+            drive: Some(0),
+            friction_limit: f64::INFINITY,
+            lane: 0,
+            mount: Mount::Chassis,
+        };
+        let solids = solids_of(&part);
+        assert_eq!(solids.len(), 1 + 6);
+        for grouser in &solids[1..] {
+            let polygon = grouser.as_convex_polygon().expect("it is one");
+            let mut corners = polygon.points().to_vec();
+            corners.sort_by(|a, b| a.length().total_cmp(&b.length()));
+            assert_eq!(corners.len(), 4);
+            for (pair, radius) in corners.chunks(2).zip([0.05, 0.06]) {
+                // Coordinates of some centimetres are rounded to 1e-17 m.
+                let thickness = (pair[1] - pair[0]).length();
+                assert!((thickness - THINNEST).abs() < 1e-15, "{thickness} m");
+                assert!((pair[0].length() - radius).abs() < 1e-15);
             }
         }
     }

@@ -46,8 +46,7 @@ fn gap_below(contact: &Contact, lane: &Profile, radius: f64, way: f64) -> f64 {
     let foot = contact.point - contact.normal * (0.5 * contact.distance);
     let center = foot + contact.normal * radius + along * way;
     let ahead = |k: usize| (bend(k) - center).dot(along) * way.signum();
-    let below = (0..count).find(|&k| ahead(k + 1) > 0.0);
-    let below = below.unwrap_or(count - 1);
+    let below = face_below(count, ahead);
     let gap = |k: usize| distance(center, [bend(k), bend(k + 1)]) - radius;
     // Ground that is no higher than the face and farther along it than this has a larger gap.
     let reach = |gap: f64| (gap.max(0.0) * (2.0 * radius + gap)).sqrt();
@@ -65,6 +64,13 @@ fn gap_below(contact: &Contact, lane: &Profile, radius: f64, way: f64) -> f64 {
         least = least.min(gap(k));
     }
     least
+}
+
+/// The face below the centre of an arc, of so many in a row: the first that ends ahead of it, or the last. `ahead` is how far
+/// the beginning of a face is ahead [m].
+fn face_below(count: usize, ahead: impl Fn(usize) -> f64) -> usize {
+    let found = (0..count).find(|&face| ahead(face + 1) > 0.0);
+    found.unwrap_or(count - 1)
 }
 
 /// [m] From a point to the segment between two others.
@@ -178,6 +184,15 @@ mod tests {
                 least,
                 epsilon = 1e-12
             );
+        }
+    }
+
+    #[test]
+    fn an_arc_is_over_the_first_face_that_ends_ahead_of_it() {
+        let ends = [-3.0, -1.0, 2.0, 5.0, 6.0];
+        for (center, face) in [(-2.0, 0), (-1.0, 1), (1.9, 1), (2.0, 2), (5.5, 3), (9.0, 3)] {
+            let found = face_below(4, |k| ends[k] - center);
+            assert_eq!(found, face, "{center} m");
         }
     }
 

@@ -274,6 +274,23 @@ fn nothing_reaches_farther_than_the_tip_of_an_arm() {
     }
 }
 
+/// Arms count from their pivots, whatever their frames, whose origins are in their middles.
+#[test]
+fn rear_arms_far_ahead_of_the_centre_of_mass_reach_no_farther_than_the_front_wheel() {
+    let mut robot = on_arms(0.0).remove(0);
+    let arms = robot.flippers.as_mut().expect("it has some");
+    (arms.ends, arms.length) = (Ends::Rear, 0.38);
+    let mut model = model(&robot);
+    model.center_of_mass = Vector::new(-1.0, 0.0);
+    let of_chassis = model
+        .parts
+        .iter()
+        .filter(|part| part.mount == Mount::Chassis);
+    let discs = of_chassis.flat_map(|part| part.discs().collect::<Vec<_>>());
+    let far = discs.map(|(tip, _)| tip.center.x + 1.0 + tip.radius);
+    assert_relative_eq!(model.reach(), far.fold(0.0, f64::max), max_relative = 1e-12);
+}
+
 #[test]
 fn a_track_runs_round_wheels_that_stand_for_one() {
     let mut robot = on_arms(0.0).remove(3);

@@ -268,3 +268,41 @@ fn ground_is_fine_where_its_pieces_are_many_and_shorter_than_a_millimetre() {
         assert!(!lane.is_fine(Vector::new(middle, 0.3), 5.0 * pitch));
     }
 }
+
+/// The tip in the middle is 0.1 mm lower, below the line from the first to the last.
+#[test]
+fn a_run_over_a_few_teeth_meets_the_low_one_too() {
+    let teeth = [
+        [0.0, -0.1],
+        [0.1, 0.0],
+        [0.2, -0.1],
+        [0.3, -1e-4],
+        [0.4, -0.1],
+        [0.5, 0.0],
+        [0.6, -0.1],
+    ];
+    let (_, lane) = rounded(&teeth, 0.0);
+    let met = met_by_run(&lane, [0.05, 1e-3], [0.55, 1e-3]);
+    let gaps: Vec<f64> = met.iter().map(|(_, gap)| *gap).collect();
+    assert_eq!(gaps.len(), 3, "{gaps:?}");
+    for (found, gap) in gaps.iter().zip([1e-3, 1.1e-3, 1e-3]) {
+        assert!((found - gap).abs() < 1e-15, "{gaps:?}");
+    }
+}
+
+/// A parabola that is open at its top has no edges.
+#[test]
+fn where_all_corners_are_concave_a_run_looks_at_none() {
+    let points = (-50..=50).map(|i| [0.01 * f64::from(i), 1e-4 * f64::from(i * i)]);
+    let (_, lane) = rounded(&points.collect::<Vec<_>>(), 0.0);
+    let mut met = 0;
+    lane.visit_corners_below_run(
+        &Region::between(20, 80),
+        |_| true,
+        |_| {
+            met += 1;
+            None
+        },
+    );
+    assert_eq!(met, 0);
+}
