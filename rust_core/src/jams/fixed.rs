@@ -288,7 +288,8 @@ mod tests {
         }
     }
 
-    /// If nothing is farther from the origin than 1 m, the terms of a value are squares of a length of at most its size.
+    /// If nothing is farther from the origin than 1 m, the terms of a value are squares of a length of at most its
+    /// size.
     #[test]
     fn a_residual_is_no_larger_than_its_size() {
         let mut draw = Draw(72);
@@ -352,8 +353,8 @@ mod tests {
         }
     }
 
-    /// The second of two almost parallel lines tells nothing, nor the line through the intersections of circles round one
-    /// point.
+    /// The second of two almost parallel lines tells nothing, nor the line through the intersections of circles round
+    /// one point.
     #[test]
     fn of_lines_that_are_almost_one_the_places_on_a_circle_are_found() {
         let mut draw = Draw(73);
@@ -444,6 +445,45 @@ mod tests {
             let found = apart(one, other);
             assert!((found[0] - distance).abs() < 1e-15, "{found:?}");
             assert!((found[1] - size).abs() < 1e-15, "{found:?}");
+        }
+    }
+
+    /// A disc in a corner of the ground, and another one that hangs on a wall.
+    #[test]
+    fn a_pose_within_a_tenth_of_a_millimetre_is_brought_to_its_contacts() {
+        let on = |x: f64, normal: Vector| Contact {
+            surface: 0,
+            place: 0,
+            kind: Kind::OnFace(
+                Disc {
+                    center: Vector::new(x, 0.0),
+                    radius: 0.05,
+                },
+                normal,
+                -0.05,
+            ),
+        };
+        // All of them touch where the chassis frame is at the origin.
+        let three = [on(0.0, Vector::X), on(0.0, Vector::Y), on(0.3, Vector::Y)];
+        for (off, is_near) in [
+            (0.0, true),
+            (0.9e-4, true),
+            (-0.9e-4, true),
+            (1.1e-4, false),
+        ] {
+            for position in [Vector::X * off, Vector::Y * off] {
+                let found = polished(
+                    &three,
+                    Posture {
+                        position,
+                        angle: 0.0,
+                    },
+                );
+                assert_eq!(found.is_some(), is_near, "{position}");
+                if let Some(Posture { position, angle }) = found {
+                    assert!(position.length() < 1e-11 && angle.abs() < 1e-11);
+                }
+            }
         }
     }
 

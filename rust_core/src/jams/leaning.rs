@@ -383,7 +383,8 @@ mod tests {
             let found = both.positions(turn);
             let is_at = |place: &Vector| (*place - at.position).length() < 1e-7;
             assert!(found.iter().any(is_at), "{case}: {found:?} {at:?}");
-            // Beside it, it is no larger than terms of that size, and in proportion to the square of moments on a circle.
+            // Beside it, it is no larger than terms of that size, and in proportion to the square of moments on a
+            // circle.
             let beside = Turn::by(at.angle + 1e-3);
             let [value, size] = both.equation(beside);
             assert!(value.abs() < 4.0 * size, "{case}: {value} {size}");

@@ -143,8 +143,8 @@ pub(super) struct Standing {
     pub setting: Setting,
 }
 
-/// One whose centre of mass is put over the point in which the lines of two forces meet; `None` if they hardly do, or far
-/// away.
+/// One whose centre of mass is put over the point in which the lines of two forces meet; `None` if they hardly do, or
+/// far away.
 pub(super) fn on_two(draw: &mut Draw, case: usize) -> Option<Standing> {
     let at = posture(draw);
     let frictions = [0.0; 2].map(|_| draw.between(0.2, 0.9));

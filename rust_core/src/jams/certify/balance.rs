@@ -220,6 +220,31 @@ mod tests {
         assert!(outside > 80 && inside > 10, "{outside} {inside}");
     }
 
+    /// Whether it is at the end of a hull, in the middle of one, or in a corner.
+    #[test]
+    fn a_hull_through_the_origin_has_no_nearest_point() {
+        let [x, y, origin] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0; 3]];
+        for points in [
+            vec![origin],
+            vec![x, minus(&origin, &x)],
+            vec![x, y, [-1.0, -1.0, 0.0]],
+            vec![x, y, origin],
+        ] {
+            assert_eq!(nearest(&points), None, "{points:?}");
+        }
+        // A micrometre off it is none.
+        let found = nearest(&[[-1.0, 2e-6, 0.0], [1.0, 2e-6, 0.0]]);
+        assert_eq!(found, Some([0.0, 2e-6, 0.0]));
+    }
+
+    #[test]
+    fn four_corners_in_a_plane_hold_nothing() {
+        let square = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+        for height in [0.0, 2.0] {
+            assert_eq!(foot(&square.map(|[x, y]| [x, y, height])), None);
+        }
+    }
+
     #[test]
     fn a_foot_is_between_the_corners_and_square_to_all_edges() {
         let on_line = [[1.0, -1.0, 0.5], [1.0, 3.0, 0.5]];

@@ -338,3 +338,127 @@ fn inertia(model: &Model, center: Vector) -> f64 {
     let of_chassis = model.locked_inertia() + model.mass * about(model.center_of_mass);
     (of_chassis + of_arms.sum::<f64>()) / model.total_mass()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::jams::certify::tests::{built, scenario};
+
+    /// The Engineer with a belly on wheels before a step of 80 mm with a rounded edge.
+    fn member() -> Member {
+        let (model, ground) = built(&scenario(0.08, 0.7));
+        Member {
+            layout: Layout::new(&model, true).expect("it has round wheels"),
+            places: Place::of(&ground),
+        }
+    }
+
+    fn wheel(member: &mut Member) -> &mut Disc {
+        let shapes = member.layout.surfaces.iter_mut().map(|s| &mut s.shape);
+        let mut discs = shapes.filter_map(|shape| match shape {
+            Outline::Round(disc) if disc.radius > 0.0 => Some(disc),
+            _ => None,
+        });
+        discs.next().expect("it has one")
+    }
+
+    fn run(member: &mut Member) -> &mut [Vector; 2] {
+        let shapes = member.layout.surfaces.iter_mut().map(|s| &mut s.shape);
+        let mut runs = shapes.filter_map(|shape| match shape {
+            Outline::Flat { ends, .. } => Some(ends),
+            Outline::Round(_) => None,
+        });
+        runs.next().expect("it has a belly")
+    }
+
+    fn face(member: &mut Member) -> (&mut [Vector; 2], &mut Vector) {
+        let shapes = member.places.iter_mut().map(|place| &mut place.shape);
+        let mut faces = shapes.filter_map(|shape| match shape {
+            Facing::Face { ends, normal } => Some((ends, normal)),
+            Facing::Corner { .. } => None,
+        });
+        faces.next().expect("it has some")
+    }
+
+    fn edge(member: &mut Member) -> (&mut Vector, &mut f64, &mut [Vector; 2]) {
+        let shapes = member.places.iter_mut().map(|place| &mut place.shape);
+        let mut edges = shapes.filter_map(|shape| match shape {
+            Facing::Corner {
+                center,
+                radius,
+                cone,
+            } => Some((center, radius, cone)),
+            Facing::Face { .. } => None,
+        });
+        edges.next().expect("it has one")
+    }
+
+    type Change = fn(&mut Member);
+
+    /// A nanometre is more than rounding.
+    const OFF: Vector = Vector::new(0.6e-9, -0.8e-9);
+
+    #[test]
+    fn a_robot_or_a_ground_of_another_shape_is_not_alike() {
+        let is_alike = |change: Change| {
+            let mut other = member();
+            change(&mut other);
+            [
+                super::is_alike(&member(), &other),
+                super::is_alike(&other, &member()),
+            ]
+        };
+        assert_eq!(is_alike(|_| {}), [true; 2]);
+        let others: [(&str, Change); 13] = [
+            ("centre", |m| wheel(m).center += OFF),
+            ("radius", |m| wheel(m).radius += 1e-9),
+            ("one end of a run", |m| run(m)[0] += OFF),
+            ("its other end", |m| run(m)[1] += OFF),
+            ("grip", |m| m.layout.surfaces[0].grip = Grip::Free),
+            ("friction", |m| m.layout.surfaces[0].friction_limit = 0.5),
+            ("a surface more", |m| {
+                m.layout.surfaces.push(m.layout.surfaces[0]);
+            }),
+            ("a place more", |m| m.places.push(m.places[0])),
+            ("direction", |m| *face(m).1 += OFF),
+            ("round", |m| *edge(m).1 += 1e-9),
+            ("one side of its cone", |m| edge(m).2[0] += OFF),
+            ("the other side", |m| edge(m).2[1] += OFF),
+            ("order", |m| m.places.reverse()),
+        ];
+        for (what, change) in others {
+            assert_eq!(is_alike(change), [false; 2], "{what}");
+        }
+    }
+
+    #[test]
+    fn what_parameters_may_move_is_elsewhere_and_yet_alike() {
+        let changes: [Change; 5] = [
+            |m| m.layout.center_of_mass += OFF,
+            |m| m.places[0].friction += 1e-9,
+            |m| face(m).0[0] += OFF,
+            |m| face(m).0[1] += OFF,
+            |m| *edge(m).0 += OFF,
+        ];
+        assert!(is_at(&member(), &member()));
+        for (number, change) in changes.into_iter().enumerate() {
+            let mut other = member();
+            change(&mut other);
+            assert!(is_alike(&member(), &other), "{number}");
+            assert!(
+                !is_at(&member(), &other) && !is_at(&other, &member()),
+                "{number}"
+            );
+        }
+    }
+
+    #[test]
+    fn the_parts_of_a_family_are_its_wheels_and_its_belly() {
+        let layout = member().layout;
+        // Four wheels, and the corners of a belly.
+        assert_eq!(discs(&layout).len(), 4 + 4);
+        assert_eq!(hulls(&layout).len(), 1);
+        let radius = smallest(&layout);
+        assert!((radius - wheel(&mut member()).radius).abs() < 1e-15);
+    }
+}

@@ -268,6 +268,30 @@ mod tests {
         }
     }
 
+    /// Its arc of 4 mm is inside if its centre is, in all of a cell. Wheels do not matter here.
+    #[test]
+    fn an_edge_whose_centre_is_inside_the_belly_overlaps_with_it() {
+        let mut family = family_on_a_step();
+        family.discs.clear();
+        let (touching, _) = on_the_edge(&family, 0.15, 0.0);
+        let down = -Vector::from_angle(0.3).rotate(Vector::Y);
+        for (depth, half, is_inside) in [
+            (3.9e-3, 0.0, false),
+            (4.1e-3, 0.0, true),
+            (6e-3, 1e-3, true),
+            (6e-3, 3e-3, false),
+            (-1e-3, 0.0, false),
+        ] {
+            let mut cell = touching;
+            for (k, part) in [down.x, down.y].into_iter().enumerate() {
+                cell.low[k] += depth * part - half;
+                cell.high[k] += depth * part + half;
+            }
+            let found = matches!(family.possible(&cell), Possible::Overlap);
+            assert_eq!(found, is_inside, "{depth} m, {half} m");
+        }
+    }
+
     /// The belly is 0.365 m long. Whether wheels are in the way does not matter here.
     #[test]
     fn a_run_is_on_an_edge_if_it_is_there_between_its_ends_all_over_a_cell() {

@@ -255,7 +255,7 @@ mod tests {
         let LimitError::Memory { needed, .. } = refused else {
             panic!("{refused:?}");
         };
-        assert_eq!(needed, 2 * 18 * 8 << 40);
+        assert_eq!(needed, (2 * 18 * 8) << 40);
         assert!(ask("cells", 1000).is_ok());
     }
 }

@@ -162,8 +162,8 @@ mod tests {
         }
     }
 
-    /// Lengths count in radii of the smallest wheel, and a turn by how far it moves the middle between centre and farthest
-    /// point.
+    /// Lengths count in radii of the smallest wheel, and a turn by how far it moves the middle between centre and
+    /// farthest point.
     #[test]
     fn a_cell_is_split_where_contacts_move_most() {
         let family = family_on_a_step();

@@ -30,7 +30,7 @@ const FRICTIONS: [f64; 2] = [0.5, 0.9];
 const MOST_ANGLE: f64 = 1.3;
 
 /// The Engineer on four wheels in a row before a step.
-fn scenario(height: f64, friction: f64) -> Scenario {
+pub(super) fn scenario(height: f64, friction: f64) -> Scenario {
     let text = include_str!("../../../../tests/scenarios/engineer_belt_step.json");
     let mut scenario = Scenario::from_json(text).expect("the shared scenario is valid");
     scenario.robot.track = Track::Line(LineOfWheels {
@@ -46,7 +46,7 @@ fn scenario(height: f64, friction: f64) -> Scenario {
     scenario
 }
 
-fn built(scenario: &Scenario) -> (Model, Ground) {
+pub(super) fn built(scenario: &Scenario) -> (Model, Ground) {
     let ground = Ground::new(&scenario.terrain, scenario.robot.gauge).expect("a ground");
     let model = Model::on(&scenario.robot, &ground).expect("it can be built");
     (model, ground)

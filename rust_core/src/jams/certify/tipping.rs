@@ -283,6 +283,45 @@ mod tests {
         }
     }
 
+    /// It stands on the floor and leans against a wall, its front axle 0.1 m below the centre of mass and 0.3 m ahead
+    /// of it. With a friction of 0.9 the wall's force has a moment of 0.9 (0.3 m + 0.05 m) - 0.1 m = 0.215 m per
+    /// newton of its normal force, which alone has -0.1 m. Where the square of the radius of inertia is less than
+    /// 0.0215 m^2, its friction drives it against the direction in which the ground accelerates it. On a narrow
+    /// corner its rear wheel is then what tips it.
+    #[test]
+    fn a_balance_tips_if_it_does_with_a_quarter_less_inertia_and_with_a_quarter_more() {
+        let mut family = family_on_a_step();
+        let friction = 0.9;
+        let rubs = |touch: Touch, number: usize| Touch {
+            surface: number,
+            place: 2 * number,
+            slopes: [friction; 2],
+            ..touch
+        };
+        for (rear_axle, circle, shares) in [
+            (
+                -0.1,
+                None,
+                [(1.0 / 0.74, true), (1.0 / 0.76, false), (0.1, false)],
+            ),
+            (
+                -0.05,
+                Some(0.031_25),
+                [(1.0 / 1.26, true), (1.0 / 1.24, false), (9.0, false)],
+            ),
+        ] {
+            // So far behind that the floor's force has a moment of -0.9 x 0.215 m, and both balance the weight.
+            let behind = -0.9 * 0.215 + friction * (rear_axle - 0.05);
+            let rear = touch(Vector::Y, circle, Vector::new(behind, rear_axle), 0.05);
+            let front = touch(Vector::NEG_X, None, Vector::new(0.3, -0.1), 0.05);
+            for (share, tips) in shares {
+                family.inertia = Interval::at(0.0215 * share);
+                let both = [rubs(rear, 0), rubs(front, 1)];
+                assert_eq!(family.tips(&both), tips, "{rear_axle} {share}");
+            }
+        }
+    }
+
     #[test]
     fn a_robot_on_one_corner_tips_and_on_one_face_only_if_it_cannot_stand_there() {
         let family = family_on_a_step();

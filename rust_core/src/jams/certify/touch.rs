@@ -310,6 +310,81 @@ mod tests {
         spot.seen_across(&[center; 2], cell.position(), &turns, RUN)
     }
 
+    /// What a disc of 50 mm sees of a corner of 10 mm whose cone is 45 degrees wide either way of straight up, in
+    /// radii of the circle of 60 mm on which its axle stays: in a range about a place ahead of it and across, to the
+    /// left.
+    fn of_corner(middle: [f64; 2], half: [f64; 2]) -> Option<Normals> {
+        let family = family_on_a_step();
+        let is_corner = |spot: &&Spot| matches!(spot.place.shape, Facing::Corner { .. });
+        let found = family.places.iter().find(is_corner);
+        let mut spot = found.expect("a step has one").clone();
+        let center = Vector::new(0.7, 0.4);
+        spot.place.shape = Facing::Corner {
+            center,
+            radius: ROUND,
+            cone: [Vector::new(1.0, 1.0), Vector::new(-1.0, 1.0)].map(Vector::normalize),
+        };
+        let disc = Disc {
+            center: Vector::ZERO,
+            radius: 0.05,
+        };
+        let circle = 0.05 + ROUND;
+        let axle = Rectangle {
+            middle: center + Vector::new(-middle[1], middle[0]) * circle,
+            half: Vector::new(half[1], half[0]) * circle,
+        };
+        spot.seen(&[Rectangle::at(center); 2], axle, disc)
+    }
+
+    #[test]
+    fn a_disc_touches_a_corner_at_the_normals_on_which_its_axle_may_be() {
+        let at = |angle: f64, share: f64| {
+            let (sine, cosine) = libm::sincos(angle);
+            of_corner([share * cosine, share * sine], [0.0; 2])
+        };
+        for angle in [-0.7, -0.3, 0.0, 0.5, 0.78] {
+            let found = at(angle, 1.0).expect("it touches");
+            for sine in found.sines {
+                assert!((sine - libm::sin(angle)).abs() < 2.0 * MARGIN, "{angle}");
+            }
+            assert!(
+                found
+                    .circle
+                    .is_some_and(|circle| (circle - 0.06).abs() < 1e-15)
+            );
+            assert!((found.bisector - Vector::Y).length() < 1e-15 && !found.is_on_face);
+            assert!(at(angle, 1.0 - 1e-6).is_none() && at(angle, 1.0 + 1e-6).is_none());
+        }
+        assert!(at(0.8, 1.0).is_none() && at(-0.8, 1.0).is_none() && at(3.0, 1.0).is_none());
+    }
+
+    /// The circle is cut where it is as far ahead as the nearest axle, or leaves the cone.
+    #[test]
+    fn a_range_of_axles_touches_a_corner_where_it_meets_the_arc_of_its_cone() {
+        let sines = |middle, half| of_corner(middle, half).map(|found| found.sines);
+        for (middle, half, expected) in [
+            ([0.97, 0.0], [0.02, 0.9], Some([-0.312_25, 0.312_25])),
+            ([0.97, 0.2], [0.02, 0.05], Some([0.15, 0.25])),
+            (
+                [0.5, 0.0],
+                [0.5, 1.0],
+                Some([-0.5_f64.sqrt(), 0.5_f64.sqrt()]),
+            ),
+            // Of the circle it holds only what is beside the cone.
+            ([0.35, 0.0], [0.05, 0.95], None),
+            ([0.0, 0.8], [0.9, 0.05], None),
+            // Or nothing, below it and beyond it.
+            ([0.3, 0.0], [0.2, 0.2], None),
+            ([1.1, 0.0], [0.05, 0.9], None),
+        ] {
+            let found = sines(middle, half);
+            assert_eq!(found.is_some(), expected.is_some(), "{middle:?} {half:?}");
+            for (a, b) in found.iter().flatten().zip(expected.iter().flatten()) {
+                assert!((a - b).abs() < 1e-5, "{middle:?} {half:?}: {found:?}");
+            }
+        }
+    }
+
     #[test]
     fn a_run_lies_on_a_round_that_touches_it_between_its_ends() {
         let one = cell(0.0);

@@ -57,9 +57,9 @@ fn pairs(setting: &Setting, contacts: &[usize]) -> Vec<(usize, usize)> {
     contacts.iter().map(of).collect()
 }
 
-/// The floor pushes it forwards with the friction f of 1 / (1 + f^2) of its weight, and the wall bears as much and pushes the
-/// front wheel up. About the rear wheel's contact, the front one bears nothing from f^2 (FRONT + RADIUS) + f RADIUS = REAR on:
-/// from 0.68787 on.
+/// The floor pushes it forwards with the friction f of 1 / (1 + f^2) of its weight, and the wall bears as much and
+/// pushes the front wheel up. About the rear wheel's contact, the front one bears nothing from f^2 (FRONT + RADIUS) +
+/// f RADIUS = REAR on: from 0.68787 on.
 #[test]
 fn a_robot_stands_at_a_wall_until_its_friction_lifts_its_nose() {
     let most = (-RADIUS + (RADIUS * RADIUS + 4.0 * WALL * REAR).sqrt()) / (2.0 * WALL);
@@ -174,8 +174,8 @@ fn ground_of_too_many_pieces_is_refused_with_their_number() {
         &Cancel::default(),
     );
     let error = refused.expect_err("they make 20,004 contacts").to_string();
-    let expected = "terrain must have fewer faces and corners: with those of the robot they make 20004 contacts, and at \
-                    most 20000 are searched, got 10002 faces and corners";
+    let expected = "terrain must have fewer faces and corners: with those of the robot they make 20004 contacts, and \
+                    at most 20000 are searched, got 10002 faces and corners";
     assert_eq!(error, expected);
 }
 

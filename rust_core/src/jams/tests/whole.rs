@@ -55,6 +55,10 @@ fn jams_come_from_the_rear_and_each_once_and_none_has_tipped_over() {
         };
         assert!(!all[i + 1..].iter().any(is_same), "{jam:?}");
     }
+    // The ground pushes it forwards, along the normal turned by -90 degrees.
+    let contacts = || all.iter().flat_map(|jam| &jam.contacts);
+    assert!(contacts().all(|contact| contact.friction >= -1e-8));
+    assert!(contacts().any(|contact| contact.friction > 0.1));
     // With more room there are more.
     scenario.criteria.tip_over_angle = 1.3;
     assert!(found(&scenario).expect("its jams are known").len() > all.len());
