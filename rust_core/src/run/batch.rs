@@ -153,6 +153,7 @@ mod tests {
             assert_eq!(all.len(), 3, "{threads} threads");
             for (place, (number, run)) in all.iter().enumerate() {
                 let run = run.as_ref().expect("it stays finite");
+                assert!(run.trace.time.is_empty(), "a summary has no history");
                 assert_eq!(place, *number);
                 assert_eq!(
                     run.metrics.final_x.to_bits(),

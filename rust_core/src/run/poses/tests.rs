@@ -1,13 +1,15 @@
 //! Poses from a trace are those at which the contacts of that instant are found.
 
 use super::*;
+use crate::dynamics::FlipperCommand;
 use crate::geometry::{Envelope, Rotation};
 use crate::limits::memory::Budget;
 use crate::robot::{BodyKind, Part, Shape};
 use crate::run::record::Recorder;
 use crate::run::{Record, Simulation, ValidScenario};
 use crate::scenario::{
-    Friction, Gait, GearWheel, Hold, LineOfWheels, Scenario, Terrain, Track, Wheel,
+    End, Ends, Friction, Gait, GearWheel, Hold, LineOfWheels, Scenario, Terrain, TorqueSharing,
+    Track, Wheel,
 };
 
 /// Robots with all kinds of bodies, in front of a step, or of a step under one track only.
@@ -200,7 +202,75 @@ fn the_memory_for_poses_is_that_of_all_their_numbers() {
         let numbers = columns.map(Vec::len).into_iter().sum::<usize>();
         let bytes = bytes_of([found.samples, found.count, found.flippers]);
         assert_eq!(bytes, 8 * numbers as u64, "{name}");
+        // The long ones have no room to spare.
+        for column in [&found.bodies, &found.travels] {
+            assert_eq!(column.capacity(), column.len(), "{name}");
+        }
     }
     // Per sample 5 poses of three numbers, 5 travels, 2 poses of arms and a point.
     assert_eq!(bytes_of([10, 5, 2]), 10 * (15 + 5 + 6 + 2) * 8);
+}
+
+/// Eleven samples of the next tenth of a second.
+fn recorded(mut simulation: Simulation) -> Trace {
+    let budget = Budget::new().expect("there is memory");
+    let recorder = Recorder::new(&simulation, Record::default(), &budget);
+    let mut recorder = recorder.expect("it fits");
+    while simulation.time() < 0.1 {
+        simulation.step_until(0.1).expect("the state stays finite");
+        recorder.step(&simulation).expect("it fits");
+    }
+    let (trace, _) = recorder.finish(&simulation).expect("it fits");
+    trace
+}
+
+/// Three of them, each with its own motor.
+#[test]
+fn wheels_of_each_sample_have_run_as_far_as_their_drives() {
+    let mut scenario = read(include_str!(
+        "../../../../tests/scenarios/engineer_belt_step.json"
+    ));
+    scenario.robot.track = Track::Line(LineOfWheels {
+        count: 3,
+        wheel_radius: None,
+        wheel: Wheel::Round,
+        as_track: true,
+    });
+    scenario.robot.drivetrain.torque_sharing = TorqueSharing::Wheel;
+    let checked = ValidScenario::new(&scenario).expect("it is valid");
+    let trace = recorded(Simulation::new(&checked));
+    let found = poses_of(&scenario, &trace);
+    assert_eq!((found.samples, trace.drive_positions.len()), (11, 33));
+    for (ways, drives) in (found.travels.chunks(found.count)).zip(trace.drive_positions.chunks(3)) {
+        assert_eq!(&ways[..3], drives);
+    }
+    // Half of 0.2 m/s^2 times the square of 0.1 s.
+    assert!((trace.drive_positions[32] - 1e-3).abs() < 2e-4);
+}
+
+/// Arms at both ends turn while it is recorded.
+#[test]
+fn arms_of_each_sample_are_at_their_angles_of_that_sample() {
+    let mut scenario = read(include_str!(
+        "../../../../tests/scenarios/engineer_flippers_step.json"
+    ));
+    scenario.robot.flippers.as_mut().expect("it has some").ends = Ends::Both;
+    scenario.robot.moment_of_inertia = 1.0;
+    let checked = ValidScenario::new(&scenario).expect("it is valid");
+    let mut simulation = Simulation::new(&checked);
+    for (end, rate) in [(End::Front, 1.0), (End::Rear, -0.5)] {
+        let turn = FlipperCommand::Rate(rate);
+        simulation.command_flippers(end, turn).expect("it has arms");
+    }
+    let trace = recorded(simulation);
+    let found = poses_of(&scenario, &trace);
+    assert_eq!((found.samples, found.arms.len()), (11, 11 * 2 * 3));
+    for (i, pair) in found.arms.chunks(6).enumerate() {
+        let [front, rear] = [trace.flipper_angles[2 * i], trace.flipper_angles[2 * i + 1]];
+        let chassis = trace.chassis_angle[i];
+        assert!((pair[2] - chassis - front).abs() < 1e-12, "sample {i}");
+        assert!((pair[5] - chassis + rear).abs() < 1e-12, "sample {i}");
+    }
+    let turned = [0, 1].map(|k| trace.flipper_angles[20 + k] - trace.flipper_angles[k]);
+    assert!(turned[0] > 0.03 && turned[1] < -0.01, "{turned:?}");
 }

@@ -138,6 +138,38 @@ fn a_record_may_begin_and_end_between_two_samples() {
     assert_eq!(budget.taken(), kept);
 }
 
+/// Arms of 1.55 kg in all are held at 0.8 rad, their middle 0.17 m from the pivot: 1.55 kg x 9.81 m/s^2 x 0.17 m cos
+/// 0.8.
+#[test]
+fn the_torque_that_holds_arms_is_recorded_as_a_mean() {
+    let text = include_str!("../../../../tests/scenarios/engineer_flippers_step.json");
+    let mut scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+    (scenario.drive.gait, scenario.drive.speed) = (None, 0.0);
+    let checked = ValidScenario::new(&scenario).expect("it is valid");
+    let mut simulation = Simulation::new(&checked);
+    let budget = Budget::of(1 << 20);
+    let record = Record {
+        sample_interval: 0.05,
+        ..Record::default()
+    };
+    let mut recorder = Recorder::new(&simulation, record, &budget).expect("it fits");
+    while simulation.time() < 0.2 {
+        simulation.step_until(0.2).expect("the state stays finite");
+        recorder.step(&simulation).expect("it fits");
+    }
+    let (trace, _) = recorder.finish(&simulation).expect("it fits");
+    assert_eq!(trace.flipper_torques.len(), trace.time.len());
+    for (time, torque) in trace.time.iter().zip(&trace.flipper_torques).skip(2) {
+        assert!((torque - 1.801).abs() < 0.01, "{torque} N m at {time} s");
+    }
+    assert!(
+        trace
+            .flipper_angles
+            .iter()
+            .all(|angle| (angle - 0.8).abs() < 1e-3)
+    );
+}
+
 /// In 2.5 s there are three intervals of 1 s, and both ends.
 #[test]
 fn a_batch_asks_for_all_samples_of_its_runs() {

@@ -140,3 +140,28 @@ fn has_the_same_parts(one: &Robot, other: &Robot) -> bool {
     (like.drivetrain.torque_curve).clone_from(&other.drivetrain.torque_curve);
     like == *other || like.without_belly().is_some_and(|bare| bare == *other)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::trials::tests::engineer;
+
+    #[test]
+    fn a_robot_with_other_motors_or_without_its_belly_has_the_same_parts() {
+        let robot = engineer().robot;
+        let with = |change: fn(&mut Robot)| {
+            let mut other = robot.clone();
+            change(&mut other);
+            has_the_same_parts(&robot, &other)
+        };
+        let bare = robot.without_belly().expect("it has one");
+        assert!(with(|_| {}) && with(|r| r.drivetrain.max_torque *= 2.0));
+        assert!(with(
+            |r| r.drivetrain.torque_curve = Some(vec![[0.0, 6.0], [2.0, 0.0]])
+        ));
+        assert!(has_the_same_parts(&robot, &bare));
+        // A belly that was not there is another part, and mass is no part of the motors.
+        assert!(!has_the_same_parts(&bare, &robot));
+        assert!(!with(|r| r.mass += 1.0) && !with(|r| r.drivetrain.max_speed *= 2.0));
+    }
+}

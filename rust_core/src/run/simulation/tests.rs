@@ -522,6 +522,41 @@ fn an_arm_that_hovers_over_the_ground_does_not_touch_it() {
     assert!(!simulation.flipper_touches(End::Front));
 }
 
+/// An arm touches with what is on it, bears, and lies farther along it than its root reaches, however far beside it.
+#[test]
+fn of_the_contacts_of_an_arm_those_beyond_its_root_touch() {
+    for (end, ends, angle) in [
+        (End::Front, Ends::Front, 0.8),
+        (End::Front, Ends::Front, -0.3),
+        (End::Rear, Ends::Rear, 0.8),
+        (End::Rear, Ends::Rear, 2.5),
+    ] {
+        let mut simulation = on_arms(ends, angle);
+        let model = simulation.model().clone();
+        let pose = simulation.state.pose(&model);
+        let pivot = pose.transform_point(model.flippers[0].pivot);
+        let along = pose.rotation * (direction(end.sign() * angle) * end.sign());
+        let of_arm = |part: &crate::robot::Part| part.mount == Mount::Flipper(0);
+        let arm = model.parts.iter().position(of_arm).expect("it has one");
+        let chassis = model.parts.iter().position(|part| !of_arm(part));
+        let mut touches = |part: usize, far: f64, aside: f64, force: f64| {
+            let point = pivot + along * far + crate::geometry::left_of(along) * aside;
+            let contact = Contact {
+                normal_force: force,
+                ..Contact::new(part, (0, -1), (point, Vector::Y), 0.0)
+            };
+            simulation.dynamics.take_contacts(vec![contact], 0.0, 1e-3);
+            simulation.flipper_touches(end)
+        };
+        for aside in [-0.06, 0.06] {
+            assert!(touches(arm, 0.066, aside, 1.0) && touches(arm, 0.3, aside, 1.0));
+            assert!(!touches(arm, 0.062, aside, 1.0) && !touches(arm, -0.3, aside, 1.0));
+            assert!(!touches(arm, 0.3, aside, 0.0));
+            assert!(!touches(chassis.expect("it has a track"), 0.3, aside, 1.0));
+        }
+    }
+}
+
 /// What does not change is shared, and what does is built.
 #[test]
 fn a_variant_of_a_stop_stands_on_its_own_ground_only_if_that_differs() {

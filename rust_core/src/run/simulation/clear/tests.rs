@@ -37,6 +37,36 @@ fn overlap(simulation: &mut Simulation, way: Displacement) -> f64 {
         .fold(0.0, f64::max)
 }
 
+/// However long the directions of the walls are.
+#[test]
+fn the_nearest_point_beyond_walls_is_on_those_that_hold_it_back() {
+    let wall = |along: [f64; 3], bound: f64| (along, bound);
+    for (walls, expected) in [
+        (vec![], [0.0; 3]),
+        (vec![wall([0.0, 1.0, 0.0], -1.0)], [0.0; 3]),
+        (vec![wall([0.0, 0.0, 2.0], 1.0)], [0.0, 0.0, 0.5]),
+        (vec![wall([3.0, 4.0, 0.0], 10.0)], [1.2, 1.6, 0.0]),
+        // Two at a right angle, and a third that is not reached, or reached alone.
+        (
+            vec![wall([1.0, 0.0, 0.0], 1.0), wall([0.0, 2.0, 0.0], 1.0)],
+            [1.0, 0.5, 0.0],
+        ),
+        (
+            vec![wall([1.0, 0.0, 0.0], 1.0), wall([1.0, 0.0, 1.0], 3.0)],
+            [1.5, 0.0, 1.5],
+        ),
+        (
+            vec![wall([1.0, 0.0, 1.0], 3.0), wall([1.0, 0.0, 0.0], 2.0)],
+            [2.0, 0.0, 1.0],
+        ),
+    ] {
+        let found = nearest_beyond(&walls);
+        let off = [0, 1, 2].map(|i| (found[i] - expected[i]).abs());
+        // Sweeps end once they move it by a hundredth of a nanometre.
+        assert!(off.iter().all(|off| *off < 1e-9), "{walls:?}: {found:?}");
+    }
+}
+
 #[test]
 fn a_robot_is_raised_straight_up_from_its_own_floor() {
     for turn in [-0.4, 0.3] {

@@ -98,6 +98,19 @@ fn what_falls_lands_when_it_does() {
     );
 }
 
+/// At 50 m/s, it would be a quarter of a metre under the ground in the middle of a step of 10 ms.
+#[test]
+fn a_robot_that_would_fall_through_the_ground_in_a_step_strikes_it() {
+    let mut simulation = on_gears(0.0);
+    simulation.state.center.y += 5e-5;
+    simulation.step().expect("it is finite");
+    let is_open = |contact: &Contact| contact.distance > 1e-5;
+    assert!(simulation.loaded().iter().all(is_open));
+    simulation.state.velocity.y = -50.0;
+    let tried = simulation.tried(STEP);
+    assert!(tried.strikes && tried.length < 1e-4, "{} s", tried.length);
+}
+
 #[test]
 fn a_step_in_which_forces_move_more_than_the_room_of_gaps_left_out_is_halved() {
     let mut simulation = on_gears(0.0);
@@ -108,7 +121,11 @@ fn a_step_in_which_forces_move_more_than_the_room_of_gaps_left_out_is_halved() {
     assert!(far > 0.0 && !tried.strikes);
     tried.room = 0.99 * far;
     assert_eq!(simulation.judge(&tried), Err(half));
-    tried.room = 1.01 * far;
+    // No step is shorter than the shortest.
+    let length = std::mem::replace(&mut tried.length, SHORTEST.value());
+    tried.room = 0.0;
+    assert_ne!(simulation.judge(&tried), Err(0.5 * SHORTEST.value()));
+    (tried.length, tried.room) = (length, 1.01 * far);
     assert_ne!(simulation.judge(&tried), Err(half));
 }
 
@@ -207,8 +224,8 @@ fn is_left_out(speed: f64, half: f64, gap: f64) -> (bool, f64) {
     (kept.len() == 1, room)
 }
 
-/// It is where it falls to at its speed in half a step. Forces that pull at most twice as much as gravity must not close
-/// it in this step, nor bring it deeper than half a millimetre by the middle of the next.
+/// It is where it falls to at its speed in half a step. Forces that pull at most twice as much as gravity must not
+/// close it in this step, nor bring it deeper than half a millimetre by the middle of the next.
 #[test]
 fn a_gap_that_a_fall_at_twice_gravity_leaves_open_is_left_out() {
     let longest = 8e-3;
@@ -227,7 +244,20 @@ fn a_gap_that_a_fall_at_twice_gravity_leaves_open_is_left_out() {
     }
 }
 
-/// Half of the way that a part can make in the next step, as that looks in its middle, is the range, and half a millimetre more.
+/// What falls at twice gravity in a step is looked for, and no less than the scenario says; half of that is seen from
+/// the step's middle.
+#[test]
+fn a_search_for_contacts_reaches_as_far_as_a_fall_in_its_step() {
+    for (h, reach) in [(1e-3, 2e-4), (0.01, 2.0 * 9.81 * 1e-4)] {
+        let (mut simulation, mut attempt) = (on_gears(0.0), Attempt::default());
+        let travel = simulation.find_contacts(&mut attempt, h);
+        assert!((travel - 2.0 * 9.81 * h * h).abs() < 1e-15, "{travel} m");
+        assert!((attempt.sight - (reach - 0.5 * travel)).abs() < 1e-15);
+    }
+}
+
+/// Half of the way that a part can make in the next step, as that looks in its middle, is the range, and half a
+/// millimetre more.
 #[test]
 fn a_search_holds_until_a_part_may_be_half_a_millimetre_beyond_it() {
     let simulation = on_gears(0.0);
