@@ -436,8 +436,7 @@ pub(crate) fn facet_along(points: &[Vector], facets: Range<usize>, fraction: f64
     let chord = points[end] - points[start];
     let far = fraction * chord.length_squared();
     let is_behind = |i: usize| (points[i] - points[start]).dot(chord) <= far;
-    // Pieces are often equally long.
-    let guess = start + ((fraction * (end - start) as f64).max(0.0) as usize).min(end - start - 1);
+    let guess = likely_facet(start..end, fraction);
     if is_behind(guess) && !is_behind(guess + 1) {
         return guess;
     }
@@ -451,6 +450,13 @@ pub(crate) fn facet_along(points: &[Vector], facets: Range<usize>, fraction: f64
         }
     }
     facet
+}
+
+/// The facet there if all are equally long, as they often are.
+fn likely_facet(facets: Range<usize>, fraction: f64) -> usize {
+    let count = facets.len();
+    let before = (fraction * count as f64).max(0.0) as usize;
+    facets.start + before.min(count - 1)
 }
 
 #[cfg(test)]

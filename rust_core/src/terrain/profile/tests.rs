@@ -181,6 +181,23 @@ fn a_place_along_a_straight_piece_is_on_the_facet_that_holds_it() {
 }
 
 #[test]
+fn of_equal_facets_the_likely_one_holds_the_place() {
+    for (fraction, facet) in [
+        (-0.1, 3),
+        (0.0, 3),
+        (0.24, 3),
+        (0.26, 4),
+        (0.6, 5),
+        (0.99, 6),
+        (1.0, 6),
+        (1.7, 6),
+    ] {
+        assert_eq!(likely_facet(3..7, fraction), facet, "{fraction}");
+    }
+    assert_eq!(likely_facet(3..4, 0.5), 3);
+}
+
+#[test]
 fn points_on_a_straight_line_are_no_edges() {
     let points = [
         [-1.0, 0.0],

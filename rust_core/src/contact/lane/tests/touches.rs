@@ -306,3 +306,53 @@ fn where_all_corners_are_concave_a_run_looks_at_none() {
     );
     assert_eq!(met, 0);
 }
+
+/// Of 2 mm each, so that a chord between the outermost teeth is tried.
+#[test]
+fn where_no_corner_matters_a_run_looks_at_none() {
+    let points = (0..=200).map(|i| [2e-3 * f64::from(i), 1e-3 * f64::from(i % 2)]);
+    let (_, lane) = rounded(&points.collect::<Vec<_>>(), 0.0);
+    let met_if = |matters: bool| {
+        let mut met = 0;
+        let region = Region::between(20, 180);
+        lane.visit_corners_below_run(
+            &region,
+            |_| matters,
+            |_| {
+                met += 1;
+                None
+            },
+        );
+        met
+    };
+    assert_eq!(met_if(false), 0);
+    assert!(met_if(true) > 0);
+}
+
+/// Fine ground with one tooth, which is the last but one corner of a run.
+#[test]
+fn a_tooth_right_before_the_end_of_a_run_is_met() {
+    let tooth = 59;
+    let points = (0..=100).map(|i| {
+        let high = if i == tooth {
+            2e-4
+        } else {
+            1e-4 * f64::from(i % 2)
+        };
+        [5e-4 * f64::from(i), high]
+    });
+    let (_, lane) = rounded(&points.collect::<Vec<_>>(), 0.0);
+    let mut met = Vec::new();
+    let region = Region::between(11, 60);
+    lane.visit_corners_below_run(
+        &region,
+        |_| true,
+        |i| {
+            met.push(i);
+            let bears = [11, 59, 60].contains(&i);
+            bears.then(|| lane.corners[i].touch(i, Vector::Y, 0.0))
+        },
+    );
+    assert!(met.contains(&(tooth as usize)), "{met:?}");
+    assert!(met.len() < 40, "the others are below the line: {met:?}");
+}
