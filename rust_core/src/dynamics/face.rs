@@ -66,8 +66,8 @@ fn gap_below(contact: &Contact, lane: &Profile, radius: f64, way: f64) -> f64 {
     least
 }
 
-/// The face below the centre of an arc, of so many in a row: the first that ends ahead of it, or the last. `ahead` is how far
-/// the beginning of a face is ahead [m].
+/// The face below the centre of an arc, of so many in a row: the first that ends ahead of it, or the last. `ahead` is
+/// how far the beginning of a face is ahead [m].
 fn face_below(count: usize, ahead: impl Fn(usize) -> f64) -> usize {
     let found = (0..count).find(|&face| ahead(face + 1) > 0.0);
     found.unwrap_or(count - 1)
