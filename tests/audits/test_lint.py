@@ -1,6 +1,7 @@
 """Every rule of lint reports its mistake, and nothing for the same robot without it."""
 
 import re
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -325,6 +326,119 @@ def test_three_equal_moments_of_a_ball_are_no_placeholder(tmp_path: Path) -> Non
     wheels = pair("front", 0.2, geometry=ball) + pair("rear", -0.2, geometry=ball)
     text = urdf(wheels.replace(WHEEL_TENSOR, tensor))
     assert of_text(tmp_path, text, "placeholder") == []
+
+
+ROVER = c2d.samples.path("rover.sdf")
+
+
+def of_rover(folder: Path, rule: str, *changes: tuple[str, str]) -> list[Finding]:
+    """Findings of a rule in the sample with a drive plugin, after changes of its text."""
+    text = ROVER.read_text(encoding="utf-8")
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new)
+    return of_text(folder, text, rule, name="rover.sdf")
+
+
+def turned(*names: str) -> Iterator[tuple[str, str]]:
+    """Changes that turn the axes of these wheels round."""
+    for name in names:
+        joint = f"<child>{name}</child>\n      <axis><xyz>0 0 "
+        yield f"{joint}1</xyz>", f"{joint}-1</xyz>"
+
+
+def in_plugin(*pairs: tuple[str, str]) -> Iterator[tuple[str, str]]:
+    """Changes that put the wheels of each pair in place of each other."""
+    for first, second in pairs:
+        for side, name, other in (("left", first, second), ("right", second, first)):
+            end = f"_joint</{side}_joint>"
+            yield f"<{side}_joint>{name}{end}", f"<{side}_joint>{other}{end}"
+
+
+EACH = range(1, 6)
+"""The wheels of a side of the sample."""
+
+
+def test_wheels_of_one_side_that_turn_against_each_other_are_found(tmp_path: Path) -> None:
+    assert of_rover(tmp_path, "opposed") == []
+    (found,) = of_rover(tmp_path, "opposed", *turned("left_wheel_2"))
+    assert (found.severity, found.where) == ("error", "rover.sdf:35")
+    assert found.message.startswith("left_wheel_2: opposite in axis to left_wheel_1, left")
+    every = (f"{side}_wheel_{n}" for n in EACH for side in ("left", "right"))
+    assert of_rover(tmp_path, "opposed", *turned(*every)) == []  # the robot drives backwards
+
+
+def test_sides_that_one_command_turns_against_each_other_are_found(tmp_path: Path) -> None:
+    mirrored = turned(*(f"right_wheel_{n}" for n in EACH))
+    (found,) = of_rover(tmp_path, "opposed", *mirrored)
+    assert found.severity == "error"
+    assert "turns the robot on the spot" in found.message
+
+
+def test_wheels_that_a_plugin_has_on_the_other_side_are_found(tmp_path: Path) -> None:
+    swapped = in_plugin(("left_wheel_2", "right_wheel_2"))
+    (found,) = of_rover(tmp_path, "opposed", *swapped)
+    assert (found.severity, found.where) == ("error", "rover.sdf:105, 110")
+    assert found.message.startswith("right_wheel_2, left_wheel_2: the plugin has them among")
+
+
+def test_a_plugin_that_has_left_for_right_is_found_but_not_in_old_drives(tmp_path: Path) -> None:
+    swapped = [*in_plugin(*((f"left_wheel_{n}", f"right_wheel_{n}") for n in EACH))]
+    (found,) = of_rover(tmp_path, "opposed", *swapped)
+    assert found.severity == "warning"
+    assert "told to turn left, the robot turns right" in found.message
+    old = [(f"{side}_joint>", f"{side}Joint>") for side in ("left", "right")]
+    assert of_rover(tmp_path, "opposed", *swapped, *old) == []
+
+
+def test_axes_without_a_plugin_may_point_either_way(tmp_path: Path) -> None:
+    wheels = WHEELS.replace('<axis xyz="0 1 0"/>', '<axis xyz="0 -1 0"/>', 1)
+    assert of_text(tmp_path, urdf(wheels, MOTORS), "opposed") == []
+
+
+@pytest.mark.parametrize(
+    ("setting", "count"),
+    [
+        ("<wheel_radius>0.3", 1),
+        ("<wheel_radius>0.106", 1),
+        ("<wheel_radius>0.104", 0),
+        ("<wheel_radius>0.096", 0),
+        ("<wheel_radius>0.094", 1),
+        ("<wheel_radius>0", 0),
+        ("<wheel_radius>large", 0),
+    ],
+)
+def test_a_plugin_with_another_radius_than_its_wheels_is_found(
+    tmp_path: Path, setting: str, count: int
+) -> None:
+    assert len(of_rover(tmp_path, "wheel radius", ("<wheel_radius>0.1", setting))) == count
+
+
+@pytest.mark.parametrize(
+    ("name", "size", "told"),
+    [
+        ("wheel_radius", "0.3", "0.3 m, but theirs is 0.1 m: told to drive at 0.5 m/s, it turns"
+         " them for 0.167 m/s"),
+        ("wheelDiameter", "0.1", "0.1 m, but theirs is 0.2 m: told to drive at 0.25 m/s, it turns"
+         " them for 0.5 m/s"),
+    ],
+)  # fmt: skip
+def test_lint_says_how_fast_a_drive_with_another_radius_is(
+    tmp_path: Path, name: str, size: str, told: str
+) -> None:
+    sized = f"<{name}>{size}</{name}><max_linear_velocity>0.5</max_linear_velocity>"
+    (found,) = of_rover(tmp_path, "wheel radius", ("<wheel_radius>0.1</wheel_radius>", sized))
+    assert (found.severity, found.where) == ("warning", "rover.sdf:115")
+    assert told in found.message
+
+
+def test_every_pair_of_wheels_may_have_its_own_diameter(tmp_path: Path) -> None:
+    sizes = "".join(f"<wheel_diameter>{size}</wheel_diameter>" for size in (0.2, 0.2, 0.4, 0.2))
+    change = "<wheel_radius>0.1</wheel_radius>"
+    (found,) = of_rover(tmp_path, "wheel radius", (change, f"{sizes}<wheel_diameter>0.2"
+                        "</wheel_diameter>"))  # fmt: skip
+    assert found.message.startswith("left_wheel_3, right_wheel_3: wheel_diameter of the plugin")
+    assert of_rover(tmp_path, "wheel radius", (change, sizes)) == []  # of whom is each?
 
 
 OVERLAPPING = (WHEELS, pair("middle", 0.1))

@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from crawler2d.audits.drives import opposed, other_radius
 from crawler2d.common.bodies import belly_corners
 from crawler2d.model_tree import Joint, Link, Where
 from crawler2d.parameters.flippers import reach_of
@@ -468,6 +469,14 @@ def _effect_of_overlap(reading: Reading, names: set[str]) -> tuple[str, str]:
     return "note", "switch self-collision off where the file is loaded, or they push each other"
 
 
+def _opposed(reading: Reading) -> Iterator[_Break]:
+    yield from (_Break(*each) for each in opposed(reading))
+
+
+def _wheel_radius(reading: Reading) -> Iterator[_Break]:
+    yield from (_Break(*each) for each in other_radius(reading))
+
+
 def _warnings(reading: Reading) -> Iterator[_Break]:
     for warning in reading.warnings:
         line = re.search(re.escape(reading.tree.file) + r"[^:]*:[0-9]+", warning)
@@ -520,6 +529,18 @@ RULES = (
         stated=("robot.drivetrain.max_torque",),
     ),
     Rule("not driven", "error", "Every wheel has a motor.", robot=_pushed, file=_no_motor),
+    Rule(
+        "opposed",
+        "error",
+        "A drive plugin turns all wheels of a side the same way.",
+        file=_opposed,
+    ),
+    Rule(
+        "wheel radius",
+        "warning",
+        "The radius in a drive plugin is that of its wheels.",
+        file=_wheel_radius,
+    ),
     Rule(
         "friction",
         "warning",

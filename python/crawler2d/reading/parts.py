@@ -35,8 +35,10 @@ __all__ = [
     "collision_ancestors",
     "collisions",
     "driven_by",
+    "driven_on",
     "ellipsoid",
     "inertia",
+    "is_drive",
     "joint_of",
     "joint_or_fixed",
     "mimic_coupling",
@@ -198,12 +200,22 @@ def plugin_of(plugin: Element) -> Plugin:
     return Plugin(name=name, filename=filename, settings=tuple(settings), at=plugin.where)
 
 
+def is_drive(plugin: Plugin) -> bool:
+    """Whether a plugin is a differential or skid-steer drive."""
+    return any(kind in f"{plugin.name} {plugin.filename}".lower() for kind in ("diff", "skid"))
+
+
+def driven_on(plugin: Plugin, side: str) -> list[tuple[str, Where]]:
+    """Return the joints that a drive has as those on the left or right, with their lines."""
+    return plugin.values(*(name for name in _DRIVEN if name.startswith(side)))
+
+
 def driven_by(plugins: tuple[Plugin, ...]) -> dict[str, Where]:
     """Return the joints that a differential or skid-steer drive turns, with their lines."""
     return {
         joint: where
         for plugin in plugins
-        if any(kind in f"{plugin.name} {plugin.filename}".lower() for kind in ("diff", "skid"))
+        if is_drive(plugin)
         for joint, where in plugin.values(*_DRIVEN)
     }
 
