@@ -441,6 +441,27 @@ def test_every_pair_of_wheels_may_have_its_own_diameter(tmp_path: Path) -> None:
     assert of_rover(tmp_path, "wheel radius", (change, sizes)) == []  # of whom is each?
 
 
+def test_the_torque_of_a_drive_of_gazebo_classic_is_a_limit(tmp_path: Path) -> None:
+    joints = "".join(
+        f"<{side}_joint>{side}_{end}_joint</{side}_joint>"
+        for side in ("left", "right")
+        for end in ("front", "rear")
+    )
+    plugin = '<gazebo><plugin name="drive" filename="libgazebo_ros_diff_drive.so">'
+    plugin += f"{joints}<max_wheel_torque>3</max_wheel_torque></plugin></gazebo>"
+    text = urdf(pair("front", 0.2, limit=""), pair("rear", -0.2, limit=""), plugin)
+    assert of_text(tmp_path, text, "effort", engine="classic") == []
+    (found,) = of_text(tmp_path, text, "effort", engine="gz")
+    assert found.message.startswith("4 of 4 wheels have no effort limit")
+
+
+def test_a_limit_that_other_wheels_have_is_no_estimate(tmp_path: Path) -> None:
+    text = (FILES / "cart.urdf").read_text(encoding="utf-8")
+    tips = text.replace('effort="5" velocity="20"', 'effort="0" velocity="20"')
+    (found,) = of_text(tmp_path, tips, "effort")
+    assert "here they have 15 N m per track, those of the others" in found.message
+
+
 OVERLAPPING = (WHEELS, pair("middle", 0.1))
 
 

@@ -18,6 +18,7 @@ from crawler2d.parameters.robot import Robot
 from crawler2d.parameters.track import ForceTrack, HybridWheels, LineOfWheels
 from crawler2d.reading.loading import size_of
 from crawler2d.reading.log import lines, list_names
+from crawler2d.reading.parts import wheel_torques
 from crawler2d.reading.reading import Reading
 from crawler2d.reading.wheels import farthest, subtrees
 
@@ -344,12 +345,20 @@ def _friction(reading: Reading) -> Iterator[_Break]:
 def _no_effort_limit(reading: Reading) -> Iterator[_Break]:
     every, driven = [joint for _, joint in _wheel_links(reading)], reading.tree.driven
     wheels = [joint for joint in every if joint.name in driven] or every
-    without = [joint for joint in wheels if not joint.effort or not math.isfinite(joint.effort)]
+    # Differential drives of Gazebo Classic have their own motor limits.
+    limited = wheel_torques(reading.tree.plugins) if reading.engine == "classic" else {}
+    without = [
+        joint
+        for joint in wheels
+        if joint.name not in limited and not (joint.effort and math.isfinite(joint.effort))
+    ]
     if without:
         torque = reading.robot.drivetrain.max_torque
+        is_estimate = "robot.drivetrain.max_torque" in reading.sources.estimates
         message = (
             f"{len(without)} of {len(wheels)} wheels have no effort limit: their motors hold the"
-            f" speed under any load; here they have {torque:.3g} N m per track, an estimate"
+            f" speed under any load; here they have {torque:.3g} N m per track,"
+            f" {'an estimate' if is_estimate else 'those of the others'}"
         )
         yield _Break(message, lines([joint.effort_at for joint in without]))
 
