@@ -467,6 +467,8 @@ class Tree:
         Links whose surface is moved from outside the file.
     couplings : tuple of Coupling
         Couplings of joints.
+    floors : tuple of (float, Where)
+        [-] Coefficients of the ground in its file, and their lines.
     at : Where
         Line of the model element.
     """
@@ -480,6 +482,7 @@ class Tree:
     driven: Mapping[str, Where] = field(default_factory=dict)
     tracks: tuple[str, ...] = ()
     couplings: tuple[Coupling, ...] = ()
+    floors: tuple[tuple[float, Where], ...] = ()
     at: Where = NOWHERE
 
     @property

@@ -28,6 +28,7 @@ from crawler2d.parameters.terrain import (
 )
 from crawler2d.presets.unknowns import of_ground, of_robot
 from crawler2d.reading.engines import Engine
+from crawler2d.reading.log import span
 from crawler2d.reading.meshes import MeshRule
 from crawler2d.reading.reading import Reading, read_robot
 from crawler2d.variation.distributions import Distribution, Levels, Ranges, scaled, shifted, uniform
@@ -246,9 +247,9 @@ def unknown_of_file(
 
     Figures stated by the file have a narrow range: a tenth of torque and friction, 2 % of the axle
     distance for the centre of mass, a twentieth of the radius for the belly. Estimates have a wide
-    one, that of `unknowns.of_robot` for robots that are not presets. A model of a robot does not
-    describe the floor: unless given, its own coefficient is between 0.5 and 1, and the rule of the
-    engine combines it with that of the tracks.
+    one, that of `unknowns.of_robot` for robots that are not presets. A robot drives on many floors,
+    whatever that of its file is: unless given, their coefficient is between 0.5 and 1, and the rule
+    of the engine combines it with that of the tracks.
 
     Parameters
     ----------
@@ -280,9 +281,11 @@ def unknown_of_file(
         if high - low <= _MOST_FROM_FLOORS * reading.friction:
             ranges["terrain.friction"] = about, f"{stated['friction']}; a tenth"
         else:
+            own = [friction for friction, _ in reading.tree.floors]
+            file = f"{span(own)} in the file" if own else "which the file does not state"
             source = (
-                f"that of the floor, which no model file states, is taken as {FLOORS[0]:g} to"
-                f" {FLOORS[1]:g}; {reading.engine} combines it with {stated['friction']}"
+                f"that of the floor, {file}, is taken as {FLOORS[0]:g} to {FLOORS[1]:g};"
+                f" {reading.engine} combines it with {stated['friction']}"
             )
             ranges["terrain.friction"] = uniform(low, high), source
     return Ranges.with_sources(ranges)

@@ -19,6 +19,7 @@ __all__ = [
     "estimate",
     "lines",
     "list_names",
+    "span",
 ]
 
 _MOST_LINES = 4  # listed individually
@@ -139,6 +140,19 @@ def lines(places: Iterable[Where], what: str = "") -> str:
         kind = f"{what} of {len(order)}" if what else f"{len(order)}"
         parts.append(f"{file}:{order[0]} to {order[-1]}, {kind} lines")
     return "; ".join(parts)
+
+
+def span(values: Iterable[float]) -> str:
+    """Write the smallest and the largest of some numbers, or the one that all are.
+
+    Examples
+    --------
+    >>> span([0.9, 0.15, 0.4]), span([0.5, 0.5])
+    ('0.15 to 0.9', '0.5')
+    """
+    order = sorted(values)
+    low, high = f"{order[0]:g}", f"{order[-1]:g}"
+    return low if low == high else f"{low} to {high}"
 
 
 @contextmanager

@@ -36,9 +36,11 @@ from crawler2d.reading.meshes import MOST_CORNERS, Meshes
 from crawler2d.reading.parsing import Element, ask_child, no_more_files, serve
 from crawler2d.reading.parts import (
     ON_ITS_OWN,
+    Limit,
     collisions,
     ellipsoid,
     order_links,
+    warn_of_gravity,
     warn_of_tilt,
 )
 
@@ -92,6 +94,9 @@ def read_mjcf(root: Element, text: str, model: str | None, meshes: Meshes) -> Tr
     question = {"text": text, "file": file, "files": meshes.files.parameters}
     answer = ask_child(__name__, question, file=file, files=meshes.files)
     _check_numbers(answer, file)
+    for option in root.all("option"):
+        if "gravity" in option.attributes:
+            warn_of_gravity(option, "gravity", meshes.warnings)
     return _Model(answer, root.where, meshes).tree(model)
 
 
@@ -179,8 +184,18 @@ class _Model:
                 )
                 for each in self.answer["couplings"]
             ),
+            floors=tuple(self.floors()),
             at=self.at,
         )
+
+    def floors(self) -> list[Limit]:
+        """[-] Return the friction of the ground: of planes and height maps, or of all that stands.
+
+        A file without ground has none.
+        """
+        still = [each for each in self.answer["shapes"] if each["body"] == 0 and each["collides"]]
+        ground = [each for each in still if each["kind"] in ("plane", "hfield")]
+        return [(each["friction"], self.where(each)) for each in ground or still]
 
     def root(self, name: str | None) -> int:
         """Return the body with the free joint."""

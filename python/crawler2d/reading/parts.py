@@ -49,6 +49,7 @@ __all__ = [
     "plugin_of",
     "shape_of",
     "solid",
+    "warn_of_gravity",
     "warn_of_tilt",
     "wheel_torques",
 ]
@@ -93,6 +94,8 @@ Limit = tuple[float, Where]
 _MOST_LINKS = 1000
 _USUAL_FRICTION = 1.0  # default of SDF
 _LONGEST_NAME = 200
+_GRAVITY = (0.0, 0.0, -9.81)  # [m/s^2] Default of a scenario.
+_NEAR = 0.01  # of gravity, as files have 9.8 or a local value
 _UPRIGHT = 0.01  # [rad] A root with a smaller tilt counts as upright.
 
 
@@ -368,6 +371,19 @@ def warn_of_tilt(path: str, pose: Pose, what: str, warnings: list[ReadingWarning
     if tilt > _UPRIGHT:
         reason = f"is left out: the z axis of the {what} is taken as upwards"
         warnings.append((path, f"{math.degrees(tilt):.3g} degrees off upright", reason))
+
+
+def warn_of_gravity(
+    element: Element, attribute: str | None, warnings: list[ReadingWarning]
+) -> None:
+    """Warn of gravity that differs from that of a scenario; what is no vector is passed over."""
+    with contextlib.suppress(ScenarioError):
+        vector = element.reals(3, attribute)
+        if math.dist(vector, _GRAVITY) > _NEAR * math.hypot(*_GRAVITY):
+            path = element.at if attribute is None else f"{element.at}@{attribute}"
+            value = " ".join(f"{each:g}" for each in vector)
+            reason = "is not used: here gravity is 9.81 m/s^2 downwards, or Scenario.gravity"
+            warnings.append((path, value, reason))
 
 
 def coefficient(element: Element | None, owner: Element) -> Limit:

@@ -18,7 +18,7 @@ from crawler2d.reading.assembly import Assembly, Silhouette, assemble, silhouett
 from crawler2d.reading.engines import ENGINES, Engine
 from crawler2d.reading.files import Files
 from crawler2d.reading.loading import TOLERANCE, ReadOptions, load_model
-from crawler2d.reading.log import Sources, add_warnings
+from crawler2d.reading.log import Sources, add_warnings, lines, span
 from crawler2d.reading.meshes import MeshRule
 from crawler2d.reading.surfaces import refuse_unread
 
@@ -178,7 +178,7 @@ def read_robot(
         Links with surfaces that move by means outside the file, such as a controller in Isaac.
     ground_friction : float, optional
         [-] Coefficient of the ground's own surface. None takes the engine's default: 1.0, or 0.5 in
-        Isaac and Bullet.
+        Isaac and Bullet. That of a world in the file is not used; a note has it.
     tolerance : float
         [m] Largest difference between the two sides in side view.
     scale : float, optional
@@ -298,6 +298,13 @@ def read_text(
         )
     robot.wheels()  # the core checks every rule of a robot
     warnings = [ScenarioWarning(*warning) for warning in [*loaded.warnings, *work.log.warnings]]
+    unused = [(friction, at) for friction, at in tree.floors if friction != ground]
+    if unused:
+        value = span([friction for friction, _ in unused])
+        work.log.notes.append(
+            f"{lines([at for _, at in unused])}: the ground in the file has a friction of {value},"
+            f" which is not used: here it has {ground:g}; ground_friction= sets that"
+        )
     if path.suffix == ".xacro":
         work.log.notes.append(
             f"lines are those of the text that {path.name} expands to, Reading.text"

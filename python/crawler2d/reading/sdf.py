@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from contextlib import suppress
+from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 
 import numpy as np
@@ -29,6 +30,7 @@ from crawler2d.reading.log import ReadingWarning
 from crawler2d.reading.meshes import Meshes
 from crawler2d.reading.parsing import Element, real
 from crawler2d.reading.parts import (
+    Limit,
     coefficient,
     collision_ancestors,
     collisions,
@@ -43,6 +45,7 @@ from crawler2d.reading.parts import (
     plugin_of,
     shape_of,
     solid,
+    warn_of_gravity,
     warn_of_tilt,
 )
 
@@ -157,7 +160,31 @@ def read_sdf(root: Element, model: str | None, meshes: Meshes) -> Tree:
             for uri in mesh.all("uri")
         }
     )
-    return _Model(chosen, minor, meshes).tree()
+    world = chosen.parent
+    if world is None or world.tag != "world":
+        return _Model(chosen, minor, meshes).tree()
+    for gravity in world.all("gravity"):
+        warn_of_gravity(gravity, None, meshes.warnings)
+    return replace(_Model(chosen, minor, meshes).tree(), floors=tuple(_floors(world)))
+
+
+def _floors(world: Element) -> Iterator[Limit]:
+    """[-] Yield the friction that a world gives to its ground.
+
+    This is planes and height maps of static models, or else all their collisions. What breaks a
+    rule of the format is passed over, as it is no part of the robot.
+    """
+    shapes: dict[bool, list[Limit]] = {True: [], False: []}
+    for model in world.all("model"):
+        with suppress(ScenarioError):
+            if _flag(model, "static") is True:
+                for collision in (each for each in model.within() if each.tag == "collision"):
+                    kinds = (collision.only(f"geometry/{kind}") for kind in ("plane", "heightmap"))
+                    is_ground = any(kind is not None for kind in kinds)
+                    ode = collision.only("surface/friction/ode")
+                    stated = () if ode is None else (*ode.all("mu"), *ode.all("mu2"))
+                    shapes[is_ground] += [coefficient(each, each) for each in stated]
+    yield from shapes[True] or shapes[False]
 
 
 def _pose_of(element: Element, warnings: list[ReadingWarning]) -> tuple[Pose, str]:

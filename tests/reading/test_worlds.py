@@ -1,0 +1,116 @@
+"""Gravity and ground of a world in the file are not used, and the reading says so."""
+
+from pathlib import Path
+
+import pytest
+
+import crawler2d as c2d
+from crawler2d.audits.subject import subject_of, unknown_of_file
+from tests.reading.carts import FILES, read
+
+PLANE = "<plane><normal>0 0 1</normal></plane>"
+BOX = "<box><size>1 1 1</size></box>"
+
+
+def standing(name: str, geometry: str, friction: str, static: str = "<static>1</static>") -> str:
+    """A model of one shape, which stands still."""
+    surface = f"<surface><friction><ode>{friction}</ode></friction></surface>"
+    shape = f"<collision name='c'><geometry>{geometry}</geometry>\n{surface}</collision>"
+    return f"<model name='{name}'>{static}<link name='l'>{shape}</link></model>"
+
+
+def in_world(folder: Path, *parts: str, **how: float) -> c2d.Reading:
+    """The cart in a world of SDF with other parts, in lines 2 and 3 of the file."""
+    text = (FILES / "cart.sdf").read_text(encoding="utf-8")
+    model = text[text.index("<model") : text.index("</sdf>")]
+    text = f'<sdf version="1.9"><world name="moon">\n{"".join(parts)}{model}</world></sdf>'
+    return read(folder, text, "world.sdf", **how)
+
+
+def in_mujoco(folder: Path, option: str, geoms: str = "") -> c2d.Reading:
+    """The cart in MJCF with an option, and with other geoms in place of its ground."""
+    text = (FILES / "cart.xml").read_text(encoding="utf-8")
+    ground = '<geom type="plane" size="5 5 0.1"/>'
+    assert ground in text
+    text = text.replace("<worldbody>", f"{option}<worldbody>").replace(ground, geoms)
+    return read(folder, text, "world.xml")
+
+
+def of_ground(reading: c2d.Reading) -> list[str]:
+    return [note for note in reading.notes if "the ground in the file" in note]
+
+
+def of_gravity(reading: c2d.Reading) -> list[str]:
+    return [warning for warning in reading.warnings if "gravity" in warning]
+
+
+@pytest.mark.parametrize(
+    ("vector", "count"),
+    [
+        ("0 0 -1.62", 1),
+        ("0 0 -9.81", 0),
+        ("0 0 -9.8", 0),
+        ("0 0 -9.72", 0),
+        ("0 0 -9.70", 1),
+        ("1 0 -9.81", 1),
+        ("0 0 9.81", 1),
+        ("down", 0),
+    ],
+)
+def test_gravity_of_a_world_gets_a_warning_where_it_is_another(
+    tmp_path: Path, vector: str, count: int
+) -> None:
+    found = of_gravity(in_world(tmp_path, f"<gravity>{vector}</gravity>"))
+    assert len(found) == count
+    assert all(each.startswith("world.sdf:2: sdf/world[moon]/gravity") for each in found)
+    assert all(each.endswith(f"got {vector.replace('.70', '.7')}") for each in found)
+
+
+def test_gravity_of_mujoco_gets_a_warning_where_it_is_another(tmp_path: Path) -> None:
+    pytest.importorskip("mujoco")
+    (found,) = of_gravity(in_mujoco(tmp_path, '<option gravity="0 0 -1.62"/>'))
+    assert "option@gravity is not used" in found
+    assert of_gravity(in_mujoco(tmp_path, "<option/>")) == []
+
+
+def test_a_note_has_the_friction_of_the_ground_in_a_world(tmp_path: Path) -> None:
+    plane = standing("floor", PLANE, "<mu>0.15</mu><mu2>0.2</mu2>")
+    (note,) = of_ground(in_world(tmp_path, plane))
+    assert note.startswith("world.sdf:3: the ground in the file has a friction of 0.15 to 0.2")
+    assert "here it has 1; ground_friction=" in note
+    assert of_ground(in_world(tmp_path)) == []
+    assert of_ground(in_world(tmp_path, standing("floor", PLANE, ""))) == []
+
+
+def test_no_note_has_a_friction_that_is_used(tmp_path: Path) -> None:
+    plane = standing("floor", PLANE, "<mu>0.15</mu>")
+    assert of_ground(in_world(tmp_path, plane, ground_friction=0.15)) == []
+
+
+def test_planes_are_the_ground_before_other_parts_that_stand(tmp_path: Path) -> None:
+    wall, loose = standing("wall", BOX, "<mu>0.4</mu>"), standing("x", BOX, "<mu>0.5</mu>", "")
+    broken = standing("broken", PLANE, "<mu>-1</mu>")
+    plane = standing("floor", PLANE, "<mu>0.15</mu>")
+    for parts, friction in (((wall, loose, broken), 0.4), ((wall, plane), 0.15)):
+        (note,) = of_ground(in_world(tmp_path, *parts))
+        assert f"a friction of {friction}," in note
+
+
+def test_a_note_has_the_friction_of_the_ground_in_mujoco(tmp_path: Path) -> None:
+    pytest.importorskip("mujoco")
+    wall = '<geom type="box" size="1 1 1" pos="9 0 0" friction="0.4"/>'
+    floor = '<geom type="plane" size="9 9 1" pos="0 0 -1" friction="0.15"/>'
+    for geoms, friction in ((wall, 0.4), (wall + floor, 0.15)):
+        (note,) = of_ground(in_mujoco(tmp_path, "", geoms))
+        assert f"a friction of {friction}," in note
+    assert of_ground(in_mujoco(tmp_path, "")) == []
+
+
+def test_an_audit_says_whether_the_file_states_the_floor(tmp_path: Path) -> None:
+    plane = standing("floor", PLANE, "<mu>0.15</mu>")
+    for parts, told in (((plane,), "0.15 in the file"), ((), "which the file does not state")):
+        subject = subject_of(in_world(tmp_path, *parts), {})
+        assert subject.reading is not None
+        found = unknown_of_file(subject.reading, subject.floors)
+        source = found.sources["terrain.friction"]
+        assert source.startswith(f"that of the floor, {told}, is taken as 0.5 to 1; gz combines")
