@@ -432,6 +432,21 @@ def test_lint_says_how_fast_a_drive_with_another_radius_is(
     assert told in found.message
 
 
+@pytest.mark.parametrize(("radius", "count"), [("0.05", 0), ("0.042", 0), ("0.035", 1)])
+def test_gear_wheels_may_have_any_radius_from_root_to_tip(
+    tmp_path: Path, radius: str, count: int
+) -> None:
+    gears = c2d.LineOfWheels(4, wheel_radius=0.05, wheel=c2d.GearWheel(grouser_count=12))
+    path = tmp_path / "gears.sdf"
+    c2d.robots.engineer(flippers=None, track=gears).to_sdf(path)
+    text = path.read_text(encoding="utf-8")
+    own = "<wheel_radius>0.05</wheel_radius>"
+    assert own in text
+    reading = read(tmp_path, text.replace(own, f"<wheel_radius>{radius}</wheel_radius>"), path.name)
+    found = [each for each in module.lint(reading.robot, reading) if each.rule == "wheel radius"]
+    assert len(found) == count
+
+
 def test_every_pair_of_wheels_may_have_its_own_diameter(tmp_path: Path) -> None:
     sizes = "".join(f"<wheel_diameter>{size}</wheel_diameter>" for size in (0.2, 0.2, 0.4, 0.2))
     change = "<wheel_radius>0.1</wheel_radius>"
