@@ -463,6 +463,8 @@ class Tree:
         Plugins in the order of the file.
     driven : mapping of str to Where
         Joints with a motor, and the line that declares it.
+    commanded : mapping of str to (float, Where)
+        [rad/s] Largest speed that a joint is told to have, and its line.
     tracks : tuple of str
         Links whose surface is moved from outside the file.
     couplings : tuple of Coupling
@@ -480,6 +482,7 @@ class Tree:
     joints: Mapping[str, Joint]
     plugins: tuple[Plugin, ...] = ()
     driven: Mapping[str, Where] = field(default_factory=dict)
+    commanded: Mapping[str, tuple[float, Where]] = field(default_factory=dict)
     tracks: tuple[str, ...] = ()
     couplings: tuple[Coupling, ...] = ()
     floors: tuple[tuple[float, Where], ...] = ()

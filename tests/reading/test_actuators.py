@@ -164,6 +164,46 @@ def test_accelerations_are_those_of_a_differential_drive(tmp_path: Path, name: s
     assert "estimate" in usual.sources["robot.drivetrain.max_deceleration"]
 
 
+@pytest.mark.parametrize("name", ["max_wheel_acceleration", "wheelAcceleration"])
+@pytest.mark.parametrize(
+    ("rate", "wanted"), [("0.2", (0.2, 0.2)), ("0", (1.0, 4.0)), ("-1e7", (1.0, 4.0))]
+)
+def test_the_acceleration_of_wheels_is_that_of_a_drive_of_gazebo_classic(
+    tmp_path: Path, name: str, rate: str, wanted: tuple[float, float]
+) -> None:
+    plugin = '<plugin name="drive" filename="libgazebo_ros_diff_drive.so">'
+    plugin = f"<gazebo>{plugin}<{name}>{rate}</{name}></plugin></gazebo>"
+    found = read(tmp_path, stated(plugin)).robot.drivetrain
+    assert (found.max_acceleration, found.max_deceleration) == wanted
+
+
+@pytest.mark.parametrize(
+    ("limits", "wanted"),
+    [
+        ({"min": "-4", "max": "4"}, 0.32),
+        ({"min": "-3", "max": "4"}, 0.24),
+        ({"max": "20"}, 0.8),  # faster than the joint
+        ({"max": "0"}, 0.8),
+        ({"max": "fast"}, 0.8),
+        ({"initial_value": "1"}, 0.8),
+    ],
+)
+def test_the_slowest_command_of_ros2_control_sets_the_speed(
+    tmp_path: Path, limits: dict[str, str], wanted: float
+) -> None:
+    """One of four wheels of 80 mm, whose joints have 10 rad/s."""
+    params = "".join(f'<param name="{name}">{each}</param>' for name, each in limits.items())
+    control = '<ros2_control name="c" type="system"><joint name="left_rear_joint">{}</joint>'
+    velocity = f'<command_interface name="velocity">\n{params}</command_interface>'
+    effort = '<command_interface name="effort"><param name="max">1</param></command_interface>'
+    text = stated(control.format(velocity + effort) + "</ros2_control>")
+    reading = read(tmp_path, text)
+    assert reading.robot.drivetrain.max_speed == pytest.approx(wanted)
+    line = 1 + text[: text.index("<param")].count("\n")
+    is_command = reading.sources["robot.drivetrain.max_speed"] == f"cart.urdf:{line}"
+    assert is_command is (wanted < 0.8)
+
+
 def each_with(effort: str, of_tips: str, folder: Path) -> c2d.Reading:
     """The cart with these torques of its wheels, and of those at the tips of its flippers."""
     text = (FILES / "cart.urdf").read_text().replace('effort="5" velocity="10"', effort)

@@ -13,7 +13,7 @@ from crawler2d.model_tree import Joint, Shape, Tree, Where
 from crawler2d.parameters.drivetrain import PI, Drivetrain
 from crawler2d.parameters.track import BeltTrack, LineOfWheels, Track
 from crawler2d.reading.log import ReadLog, estimate, lines, list_names
-from crawler2d.reading.parts import wheel_torques
+from crawler2d.reading.parts import is_drive, wheel_torques
 from crawler2d.reading.running_gear import Pair, SideView
 from crawler2d.reading.wheels import Runner
 
@@ -56,6 +56,9 @@ _SPEEDS = ("max_velocity", "max_linear_velocity", "linear_velocity/max_velocity"
 
 _RATES = ("_acceleration", "_linear_acceleration")
 """Their names after "max" and "min"; TrackedVehicle has its own in ``linear_velocity``."""
+
+_RATES_OF_RIMS = ("max_wheel_acceleration", "wheelAcceleration")
+"""Those of Gazebo Classic, both ways, which its source code takes as m/s^2 of the rim."""
 
 _QUICKEST = 1e6  # [m/s^2]
 _SIDES = ("left", "right")
@@ -460,8 +463,12 @@ def _speed(tree: Tree, pairs: list[Pair]) -> tuple[float, str]:
     for runner in (each for pair in pairs for each in pair.both):
         if runner.joint is None:
             limits.append((runner.shape.surface_speed, runner.shape.at))
-        elif runner.joint.velocity:
+            continue
+        if runner.joint.velocity:
             limits.append((runner.joint.velocity * runner.radius, runner.joint.velocity_at))
+        if runner.joint.name in tree.commanded:
+            rate, where = tree.commanded[runner.joint.name]
+            limits.append((rate * runner.radius, where))
     limits = [(speed, where) for speed, where in limits if 0.0 < speed <= FASTEST]
     if not limits:
         return _SPEED, estimate("that of Robot.simple: the file has no limit")
@@ -471,7 +478,7 @@ def _speed(tree: Tree, pairs: list[Pair]) -> tuple[float, str]:
 def _acceleration(tree: Tree, which: str, usual: float) -> tuple[float, str]:
     """[m/s^2] Return the limit of acceleration ("max") or deceleration ("min", stated below 0)."""
     names = [f"{which}{name}" for name in _RATES]
-    stated = _of_plugins(tree, [*names, f"linear_velocity/{names[0]}"])
+    stated = _of_plugins(tree, [*names, f"linear_velocity/{names[0]}", *_RATES_OF_RIMS])
     limits = [(abs(rate), where) for rate, where in stated if 0.0 < abs(rate) <= _QUICKEST]
     return _least(limits) if limits else (usual, estimate("that of Robot.simple"))
 
@@ -480,7 +487,7 @@ def _of_plugins(tree: Tree, names: Sequence[str]) -> list[tuple[float, Where]]:
     """List the numbers that plugins of drives state under some names."""
     found = []
     for plugin in tree.plugins:
-        if "track" in plugin.name.lower() or "diff" in plugin.name.lower():
+        if is_drive(plugin) or "track" in f"{plugin.name} {plugin.filename}".lower():
             for text, where in plugin.values(*names):
                 with contextlib.suppress(ValueError):
                     found.append((float(text), where))

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 
 import numpy as np
 
+from crawler2d.errors import ScenarioError
 from crawler2d.model_tree import (
     Friction,
     Joint,
@@ -140,6 +142,7 @@ def read_urdf(root: Element, meshes: Meshes, *, leave_out: bool, is_bullet: bool
         joints=joints,
         plugins=plugins,
         driven=driven_by(plugins) | _driven(root),
+        commanded=dict(_commanded(root)),
         couplings=tuple(
             mimic_coupling(
                 element.attribute("name"),
@@ -289,3 +292,21 @@ def _driven(root: Element) -> dict[str, Where]:
         if tag == "transmission" or any(joint.all("command_interface"))
     ]
     return {joint.attribute("name"): joint.where for joint in joints}
+
+
+def _commanded(root: Element) -> Iterator[tuple[str, Limit]]:
+    """Yield the joints whose speed ros2_control limits [rad/s], with the line of the limit.
+
+    Limits in both directions are alike as a rule; the smaller one counts.
+    """
+    for block in root.all("ros2_control"):
+        for joint in block.all("joint"):
+            limits: list[Limit] = []
+            for interface in joint.all("command_interface"):
+                if interface.attributes.get("name") == "velocity":
+                    for param in interface.all("param"):
+                        if param.attributes.get("name") in ("min", "max"):
+                            with suppress(ScenarioError):  # it is no part of the format
+                                limits.append((abs(real(param, param.text)), param.where))
+            if limits:
+                yield joint.attribute("name"), min(limits, key=lambda limit: limit[0])
