@@ -335,8 +335,9 @@ def _friction(reading: Reading) -> Iterator[_Break]:
     if found:
         largest = max(coefficient for coefficient, _ in found)
         message = (
-            f"friction of {largest:g}; tracks have 0.3 to 1. {reading.engine} combines it to"
-            f" {reading.friction:g} on a floor, other engines may use it as it is"
+            f"friction of {largest:g}; tracks have 0.3 to 1. By the rules of {reading.engine}"
+            f" {reading.friction:g} counts along the tracks on a floor, other engines may use it as"
+            " it is"
         )
         severity = "error" if reading.friction > _STICKIEST else "warning"
         yield _Break(message, lines([at for _, at in found]), severity)
