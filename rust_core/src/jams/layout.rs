@@ -109,7 +109,6 @@ impl Layout {
 fn check(model: &Model) -> Result<(), ScenarioError> {
     let turning = |part: &Part| match &part.shape {
         Shape::Gear { .. } => Some("gear wheels"),
-        Shape::Hull { grouser_height, .. } if *grouser_height > 0.0 => Some("a belt with grousers"),
         Shape::Grouser(_) => Some("a belt with grousers"),
         _ => part.mount.shoe().map(|_| "a chain of shoes"),
     };

@@ -5,7 +5,8 @@ use crate::error::Error;
 use crate::jams::{Jam, JamRange, jam_ranges, jams};
 use crate::robot::Model;
 use crate::scenario::{
-    BeltTrack, LineOfWheels, Scenario, Surface as Roughness, Terrain, Track, Wheel,
+    BeltTrack, ClosedSurface, ClosedTrack, LineOfWheels, Scenario, Surface as Roughness, Terrain,
+    Track, Wheel,
 };
 use crate::terrain::Ground;
 
@@ -183,4 +184,50 @@ fn a_robot_reaches_from_its_centre_of_mass_to_its_farthest_point() {
     );
     // Two circles and the straight runs over and under them.
     assert_eq!(layout.surfaces.len(), 4);
+}
+
+/// Where they can jam depends on how far they have turned, or they are pushed by something else.
+#[test]
+fn tracks_whose_shape_turns_with_their_drives_are_refused_by_their_names() {
+    let texts = [
+        (
+            include_str!("../../../../tests/scenarios/engineer_gear3_step.json"),
+            "gear wheels",
+        ),
+        (
+            include_str!("../../../../tests/scenarios/engineer_grouser_belt_step.json"),
+            "a belt with grousers",
+        ),
+        (
+            include_str!("../../../../tests/scenarios/engineer_chain_step.json"),
+            "a chain of shoes",
+        ),
+        (
+            include_str!("../../../../tests/scenarios/engineer_force_step.json"),
+            "force",
+        ),
+    ];
+    let refused = |scenario: &Scenario| {
+        let (model, _) = built(scenario);
+        let error = Layout::new(&model, true).expect_err("it turns");
+        assert_eq!(error.path, "robot.track");
+        error.value
+    };
+    for (text, name) in texts {
+        let scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+        assert_eq!(refused(&scenario), name);
+    }
+    // Gear wheels in a closed track whose surface has their grousers, or none.
+    let mut scenario = Scenario::from_json(texts[0].0).expect("the shared scenario is valid");
+    let of = Box::new(scenario.robot.track);
+    let closed = |surface| {
+        Track::Closed(ClosedTrack {
+            of: of.clone(),
+            surface,
+        })
+    };
+    scenario.robot.track = closed(ClosedSurface::Own);
+    assert_eq!(refused(&scenario), "a belt with grousers");
+    scenario.robot.track = closed(ClosedSurface::Smooth);
+    assert!(Layout::new(&built(&scenario).0, true).is_ok());
 }
