@@ -370,10 +370,13 @@ mod tests {
             ([0.05, 0.2], false),
             ([-0.3, -0.1], false),
         ] {
-            let touches = places.map(|ahead| below(ahead, [-0.2, 0.2]));
-            let found = candidate(&touches, length);
-            let excluded = found.is_some_and(|twist| excludes(twist, &touches, length));
-            assert_eq!(excluded, !carries, "{places:?}");
+            // Whatever the friction is: along level ground it adds up to nothing.
+            for friction in [0.2, 2.0] {
+                let touches = places.map(|ahead| below(ahead, [-friction, friction]));
+                let found = candidate(&touches, length);
+                let excluded = found.is_some_and(|twist| excludes(twist, &touches, length));
+                assert_eq!(excluded, !carries, "{places:?} {friction}");
+            }
         }
         // Every support does negative work in a fall without rotation, and the weight does in a rise.
         let touches = [below(0.2, [0.0; 2])];

@@ -128,6 +128,7 @@ impl Family {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::draw::Draw;
     use crate::geometry::Vector;
     use crate::jams::certify::family::check_wheels;
     use crate::jams::certify::interval::Rectangle;
@@ -205,6 +206,41 @@ mod tests {
             assert_eq!(found, number, "{widths:?}");
             assert!((size - moved / radius).abs() < 1e-12, "{widths:?}: {size}");
         }
+    }
+
+    /// What comes nearest to excluding a cell need not exclude it.
+    #[test]
+    fn a_cell_that_is_unbalanced_is_so_in_the_motion_that_says_so() {
+        let (family, mut draw) = (family_on_a_step(), Draw(91));
+        let down = [0.0, -1.0, 0.0];
+        let (mut unbalanced, mut open) = (0, 0);
+        for _ in 0..400 {
+            let at = [
+                draw.between(-0.4, 0.4),
+                draw.between(0.0, 0.2),
+                draw.between(-0.2, 0.9),
+            ];
+            let mut cell = Cell::ZERO;
+            for (number, middle) in at.into_iter().enumerate() {
+                (cell.low[number], cell.high[number]) = (middle - 0.03, middle + 0.03);
+            }
+            let Possible::Touches(touches) = family.possible(&cell) else {
+                continue;
+            };
+            match family.judge(&cell, down, 1e-3) {
+                Verdict::Excluded(Exclusion::Unbalanced, twist) => {
+                    unbalanced += 1;
+                    assert!(excludes(twist, &touches, family.reach), "{at:?}");
+                }
+                Verdict::Open(twist, _) => {
+                    let is_near = candidate(&touches, family.reach).is_some();
+                    open += u32::from(is_near);
+                    assert!(!is_near || !excludes(twist, &touches, family.reach));
+                }
+                Verdict::Excluded(..) => {}
+            }
+        }
+        assert!(unbalanced > 10 && open > 3, "{unbalanced} {open}");
     }
 
     #[test]

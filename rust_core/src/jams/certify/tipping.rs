@@ -298,17 +298,12 @@ mod tests {
             slopes: [friction; 2],
             ..touch
         };
+        let high = [(1.0 / 0.74, true), (1.0 / 0.76, false), (0.1, false)];
+        let low = [(1.0 / 1.26, true), (1.0 / 1.24, false), (9.0, false)];
         for (rear_axle, circle, shares) in [
-            (
-                -0.1,
-                None,
-                [(1.0 / 0.74, true), (1.0 / 0.76, false), (0.1, false)],
-            ),
-            (
-                -0.05,
-                Some(0.031_25),
-                [(1.0 / 1.26, true), (1.0 / 1.24, false), (9.0, false)],
-            ),
+            (-0.1, None, high),
+            (0.0, None, high),
+            (-0.05, Some(0.031_25), low),
         ] {
             // So far behind that the floor's force has a moment of -0.9 x 0.215 m, and both balance the weight.
             let behind = -0.9 * 0.215 + friction * (rear_axle - 0.05);

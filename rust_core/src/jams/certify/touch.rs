@@ -358,6 +358,67 @@ mod tests {
         assert!(at(0.8, 1.0).is_none() && at(-0.8, 1.0).is_none() && at(3.0, 1.0).is_none());
     }
 
+    /// On ground whose friction is from 0.5 to 0.9.
+    #[test]
+    fn friction_is_along_the_drive_and_no_more_than_the_surface_has() {
+        let mut family = family_on_a_step();
+        let root = family.root();
+        let (low, high) = (0.5, 0.9);
+        for (grip, limit, slopes, slides) in [
+            (Grip::Driven(1.0), 2.0, [low, high], true),
+            (Grip::Driven(-1.0), 2.0, [-high, -low], true),
+            (Grip::Driven(1.0), 0.6, [low, 0.6], true),
+            (Grip::Driven(-1.0), 0.4, [-0.4, -0.4], true),
+            (Grip::Free, 2.0, [0.0, 0.0], true),
+            (Grip::Still, 2.0, [-high, high], false),
+            (Grip::Still, 0.6, [-0.6, 0.6], false),
+        ] {
+            let surface = &mut family.layout.surfaces[0];
+            (surface.grip, surface.friction_limit) = (grip, limit);
+            let normals = of_corner([1.0, 0.0], [0.0; 2]).expect("it touches");
+            let arm = Rectangle::at(Vector::X);
+            let touch = family.touch(&root, (0, 0), normals, (arm, 0.05));
+            let off = [0, 1].map(|k| (touch.slopes[k] - slopes[k]).abs());
+            assert!(off[0].max(off[1]) < 1e-12, "{grip:?} {limit}: {touch:?}");
+            assert_eq!((touch.slides, touch.surface, touch.place), (slides, 0, 0));
+        }
+    }
+
+    /// Of 45 degrees either way of straight up.
+    #[test]
+    fn normals_are_within_a_cone_if_the_outermost_of_them_are() {
+        let cone = [Vector::new(1.0, 1.0), Vector::new(-1.0, 1.0)].map(Vector::normalize);
+        let corner = Facing::Corner {
+            center: Vector::ZERO,
+            radius: 0.0,
+            cone,
+        };
+        let of = |from: f64, to: f64| Normals {
+            bisector: Vector::from_angle(0.5 * (from + to)),
+            sines: [-1.0, 1.0].map(|side| side * libm::sin(0.5 * (to - from))),
+            circle: None,
+            is_on_face: false,
+        };
+        let degrees = |from: f64, to: f64| of(from.to_radians(), to.to_radians());
+        for (from, to, is_within) in [
+            (90.0, 90.0, true),
+            (46.0, 46.0, true),
+            (134.0, 134.0, true),
+            (44.0, 44.0, false),
+            (136.0, 136.0, false),
+            (43.0, 50.0, false),
+            (130.0, 137.0, false),
+        ] {
+            let found = degrees(from, to).are_within_cone(corner);
+            assert_eq!(found, is_within, "{from} to {to}");
+        }
+        let face = Facing::Face {
+            ends: [Vector::ZERO, Vector::X],
+            normal: Vector::Y,
+        };
+        assert!(!degrees(90.0, 90.0).are_within_cone(face));
+    }
+
     /// The circle is cut where it is as far ahead as the nearest axle, or leaves the cone.
     #[test]
     fn a_range_of_axles_touches_a_corner_where_it_meets_the_arc_of_its_cone() {

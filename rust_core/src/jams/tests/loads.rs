@@ -33,6 +33,15 @@ fn one_force_or_two_carry_only_what_they_balance() {
     ] {
         assert!(choices(&[off]).is_empty(), "{off:?}");
     }
+    // A force may be of any size.
+    for size in [0.01, 1.0, 100.0] {
+        for (off, carries) in [(0.5e-7, true), (2e-7, false)] {
+            for one in [[off, 1.0, 0.0], [0.0, 1.0, off]] {
+                let found = choices(&[one.map(|part| size * part)]);
+                assert_eq!(!found.is_empty(), carries, "{size} {one:?}");
+            }
+        }
+    }
     // Three quarters of the first and one of the second cancel along the ground, and leave half the weight.
     let both = |moment: f64| [[1.0, 0.5, 0.2], [-3.0, 2.5, moment]];
     let [choice] = &choices(&both(-0.6))[..] else {
@@ -72,6 +81,17 @@ fn what_carries_the_weight_in_all_carries_it_by_three() {
         wrenches[count - 1] = last;
         let found = choices(&wrenches);
         assert!(!found.is_empty(), "case {case}");
+        // Each three of them once.
+        let mut sets: Vec<Vec<usize>> = found
+            .iter()
+            .map(|choice| choice.iter().map(|(i, _)| *i).collect())
+            .collect();
+        sets.sort();
+        assert!(sets.windows(2).all(|pair| pair[0] != pair[1]), "{sets:?}");
+        assert!(
+            sets.iter()
+                .all(|three| three[0] < three[1] && three[1] < three[2])
+        );
         for choice in &found {
             assert_eq!(choice.len(), 3);
             assert!(choice.iter().all(|(_, share)| *share >= -1e-8));

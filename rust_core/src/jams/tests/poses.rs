@@ -313,6 +313,39 @@ fn a_balance_on_what_is_not_there_is_none() {
     }
 }
 
+/// A level run from 0.1 m to 0.5 m, on a tip under it.
+#[test]
+fn a_run_touches_a_tip_as_far_as_its_ends_and_a_tolerance_beyond() {
+    let run = Outline::Flat {
+        ends: [Vector::new(0.1, 0.0), Vector::new(0.5, 0.0)],
+        outward: Vector::NEG_Y,
+    };
+    let tip = Facing::Corner {
+        center: Vector::new(1.0, 2.0),
+        radius: 0.0,
+        cone: [Vector::new(0.6, 0.8), Vector::new(-0.6, 0.8)],
+    };
+    let places = vec![place(tip, 0.5)];
+    let setting = setting(vec![surface(run, Grip::Free)], places, Vector::ZERO);
+    let tolerance = 0.125;
+    for (along, touches) in [
+        (-0.13, false),
+        (-0.12, true),
+        (0.0, true),
+        (0.4, true),
+        (0.52, true),
+        (0.53, false),
+    ] {
+        let at = Posture {
+            position: Vector::new(1.0 - 0.1 - along, 2.0),
+            angle: 0.0,
+        };
+        let contact = setting.contacts[0];
+        let found = contact.is_real(&setting.layout, &setting.places, &at, tolerance);
+        assert_eq!(found, touches, "{along} m");
+    }
+}
+
 #[test]
 fn poses_a_tenth_of_a_micrometre_apart_are_the_same() {
     let at = Posture {

@@ -305,6 +305,22 @@ fn what_is_commanded_later_changes_no_verdict() {
 }
 
 #[test]
+fn the_next_start_is_a_fifth_of_a_stop_window_later() {
+    let checked = ValidScenario::new(&engineer()).expect("the scenario is valid");
+    let mut robot = Simulation::new(&checked);
+    robot.advance(0.05).expect("the state stays finite");
+    let next = next_start(&robot, &Cancel::default()).expect("nobody asks it to end");
+    let later = next.time() - robot.time();
+    assert!(
+        (later - 0.2 * robot.stop_window()).abs() < 1e-9,
+        "{later} s"
+    );
+    let cancel = Cancel::default();
+    cancel.ask();
+    assert!(next_start(&robot, &cancel).is_err());
+}
+
+#[test]
 fn no_trial_takes_for_ever() {
     let (_, mut robot) = stopped(None);
     // It goes as far as it has to at the speed of the command, and after that stays on its way for as long as it has to.

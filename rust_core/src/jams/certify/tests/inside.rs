@@ -108,6 +108,27 @@ fn where_a_cell_is_as_on_a_belt_no_clear_pose_of_it_has_deeper_ground() {
     assert!(undecided < 10, "{undecided}");
 }
 
+/// The axles are as high as their radius, between the second and the third of which the wall of the step rises beyond
+/// them: the edge is nearer to the upper run than the wall half way up is to either.
+#[test]
+fn a_wall_through_the_middle_of_a_track_is_deeper_than_its_edge() {
+    let family = family_on_a_step();
+    let radius = family.tracks[0].discs[0].radius;
+    let at = Posture {
+        position: Vector::new(0.0, radius),
+        angle: 0.0,
+    };
+    // 90 mm high, and rounded by 4 mm.
+    let shares = [1.0, 0.0, 0.0, 0.0];
+    let setting = family.setting(&shares, &Cancel::default());
+    let places = setting.expect("there are few contacts").places;
+    assert!((family.depth(&places, &at) - radius).abs() < 1e-6);
+    let edge = 2.0 * radius - 0.09;
+    assert!(edge + 4e-3 < radius - 2e-3, "{edge} m");
+    let point = cell_at(&at, &shares);
+    assert!(!family.is_as_on_belt(&point, radius - 1e-3));
+}
+
 /// Of 4 m of ground only what is under the robot matters, wherever that is.
 #[test]
 fn level_ground_is_as_deep_inside_a_track_as_that_is_lowered_into_it() {

@@ -68,6 +68,23 @@ fn the_nearest_point_beyond_walls_is_on_those_that_hold_it_back() {
 }
 
 #[test]
+fn arms_are_moved_with_their_robot() {
+    let text = include_str!("../../../../../tests/scenarios/engineer_flippers_step.json");
+    let scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+    let mut robot = Simulation::new(&ValidScenario::new(&scenario).expect("it is valid"));
+    let (before, half) = (robot.reading(), robot.half_length());
+    robot.displace([0.1, 0.2, 0.3 * half]);
+    let turned = robot.reading().chassis_angle - before.chassis_angle;
+    assert!((turned - 0.3).abs() < 1e-15);
+    // Their angles over the chassis stay.
+    assert!(
+        robot
+            .flipper_angles()
+            .all(|angle| (angle - 0.8).abs() < 1e-15)
+    );
+}
+
+#[test]
 fn a_robot_is_raised_straight_up_from_its_own_floor() {
     for turn in [-0.4, 0.3] {
         let mut buried = on_a_post(0.05, [0.0, 0.0, 0.0]);
