@@ -351,7 +351,7 @@ class Joint:
         [N m s/rad] or [N s/m] Gain of a speed servo: torque or force per error of the speed.
     at : Where
         Its line.
-    effort_at, velocity_at, dynamics_at : Where
+    range_at, effort_at, velocity_at, dynamics_at : Where
         Lines of its limits, and of damping, friction and armature, if different.
     gain_at : Where
         Line of its servo.
@@ -373,6 +373,7 @@ class Joint:
     armature: float = 0.0
     gain: float | None = None
     at: Where = NOWHERE
+    range_at: Where = NOWHERE
     effort_at: Where = NOWHERE
     velocity_at: Where = NOWHERE
     dynamics_at: Where = NOWHERE
@@ -380,7 +381,7 @@ class Joint:
 
     def __post_init__(self) -> None:
         """Take the line of the joint where none is given."""
-        _default_lines(self, "effort_at", "velocity_at", "dynamics_at")
+        _default_lines(self, "range_at", "effort_at", "velocity_at", "dynamics_at")
 
     @property
     def path(self) -> str:

@@ -23,7 +23,7 @@ TENSOR = '<inertia ixx="0.1" ixy="0" ixz="0" iyy="0.2" iyz="0" izz="0.2"/>'
 WHEEL_TENSOR = '<inertia ixx="0.002" ixy="0" ixz="0" iyy="0.003" iyz="0" izz="0.002"/>'
 ROUND = '<cylinder radius="{radius}" length="0.05"/>'
 ACROSS = '<origin rpy="1.5707963267948966 0 0"/>'
-LIMIT = '<limit lower="-1" upper="1" effort="9" velocity="1"/>'
+LIMIT = '<limit lower="-3.2" upper="3.2" effort="9" velocity="1"/>'
 SIDES = (("left", 1.0), ("right", -1.0))
 
 

@@ -22,7 +22,7 @@ from crawler2d.reading.engines import (
     rotor_inertia,
     warn_ignored,
 )
-from crawler2d.reading.log import ReadLog, estimate, lines
+from crawler2d.reading.log import ReadLog, estimate, lines, list_names
 from crawler2d.reading.running_gear import Pair, SideView, centers, is_belted, pair_runners
 from crawler2d.reading.tracks import (
     BELT_TOLERANCE,
@@ -53,6 +53,9 @@ _SAME_ANGLE = 1e-3
 """[rad] Tolerated difference between the angles of two arms, as files round them."""
 
 _RATE = 1.0  # [rad/s] rate of MARV's flippers
+
+_FULL_TURN = 2.0 * math.pi * (1.0 - 1e-3)
+"""[rad] A range this large bounds no angle of a flipper; files round it."""
 
 _LIGHTEST = 1.001e-5
 """[-] Smallest fraction of the robot's mass; the core refuses lighter ones as unsolvable."""
@@ -217,6 +220,7 @@ def flippers_of(log: ReadLog, by_end: dict[str, AtEnd], mass: float) -> Flippers
     motors = [motor for end in ends for motor in end.motors]
     joints = [joint for joint, _ in motors]
     warn_ignored(log, joints)
+    _warn_of_ranges(log, joints)
     lost = max(resistance(joint, rate, log.engine) / count for joint, count in motors)
     report_losses(log, joints, lost, torque)
     rotors = [joint.armature / count for joint, count in motors]
@@ -238,6 +242,17 @@ def flippers_of(log: ReadLog, by_end: dict[str, AtEnd], mass: float) -> Flippers
         rotor_inertia=rotor_inertia(log, "robot.flippers.rotor_inertia", rotors, joints),
         track=first.track,
     )
+
+
+def _warn_of_ranges(log: ReadLog, joints: Sequence[Joint]) -> None:
+    """Warn of the ranges of joints, as flippers turn to any angle."""
+    narrow = [each for each in joints if 0.0 < each.upper - each.lower < _FULL_TURN]
+    if narrow:
+        names = list_names([joint.name for joint in narrow])
+        path = f"{lines([joint.range_at for joint in narrow])}: range[{names}]"
+        ranges = dict.fromkeys(f"{each.lower:.4g} to {each.upper:.4g} rad" for each in narrow)
+        reason = "is not simulated: here flippers turn to any angle that is commanded"
+        log.add_warning(path, list_names(list(ranges)), reason)
 
 
 def _partner(arm: Arm, others: list[Arm], tolerance: float) -> Arm:

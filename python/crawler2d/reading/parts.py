@@ -350,6 +350,7 @@ def moving_joint(
         stiffness=value.get("stiffness", 0.0),
         damping=max(0.0, value.get("damping", 0.0)),
         friction=max(0.0, value.get("friction", 0.0)),
+        range_at=at.get("lower", at.get("upper", joint.at)),
         effort_at=at.get("effort", joint.at),
         velocity_at=at.get("velocity", joint.at),
         dynamics_at=next((at[name] for name in dynamics if name in at), joint.at),
