@@ -464,6 +464,8 @@ class Tree:
         Plugins in the order of the file.
     driven : mapping of str to Where
         Joints with a motor, and the line that declares it.
+    held : mapping of str to Where
+        Those of which the motor controls the position alone, and the line that says so.
     commanded : mapping of str to (float, Where)
         [rad/s] Largest speed that a joint is told to have, and its line.
     tracks : tuple of str
@@ -483,6 +485,7 @@ class Tree:
     joints: Mapping[str, Joint]
     plugins: tuple[Plugin, ...] = ()
     driven: Mapping[str, Where] = field(default_factory=dict)
+    held: Mapping[str, Where] = field(default_factory=dict)
     commanded: Mapping[str, tuple[float, Where]] = field(default_factory=dict)
     tracks: tuple[str, ...] = ()
     couplings: tuple[Coupling, ...] = ()

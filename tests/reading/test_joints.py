@@ -68,3 +68,99 @@ def test_flippers_that_are_written_have_no_range(tmp_path: Path, suffix: str) ->
     path = tmp_path / f"engineer.{suffix}"
     path.write_text(write(), encoding="utf-8")
     assert not told_of("range", quietly(path))
+
+
+@pytest.mark.parametrize(
+    ("name", "old", "new"),
+    [
+        ("cart.sdf", "<velocity>10</velocity></limit>", "\\g<0>{}"),
+        ("cart.xml", '(<joint name="[a-z]*_(rear|front|middle)_joint")', '\\1 stiffness="50"'),
+    ],
+)
+def test_wheels_on_springs_get_a_warning(tmp_path: Path, name: str, old: str, new: str) -> None:
+    spring = "<dynamics><spring_stiffness>50</spring_stiffness></dynamics>"
+    text, count = re.subn(old, new.format(spring), cart(name))
+    assert count > 4
+    (told,) = told_of("stiffness[", read(tmp_path, text, name))
+    assert re.match(name + r":\d+: stiffness\[left_rear_joint, left_middle_joint, left_fr", told)
+    assert told.endswith("got 50 N m/rad")
+
+
+@pytest.mark.parametrize("is_first", [True, False])
+def test_wheels_whose_position_mujoco_controls_get_a_warning(
+    tmp_path: Path, *, is_first: bool
+) -> None:
+    """Also if a servo of their speed is on the same joint; that of a flipper is as it should be."""
+    text = cart("cart.xml")
+    servo = '<velocity joint="left_rear_joint" kv="10" forcerange="-5 5" ctrlrange="-10 10"/>'
+    position = '<position joint="left_rear_joint" kp="10"/>'
+    assert servo in text
+    text = text.replace(servo, position + servo if is_first else servo + position)
+    of_flipper = '<velocity joint="left_flipper_joint" kv="100"'
+    text = text.replace(of_flipper, '<position joint="left_flipper_joint" kp="100"')
+    (told,) = told_of("position", read(tmp_path, text, "cart.xml"))
+    assert told.endswith("which here are driven at a speed, got left_rear_joint")
+
+
+def test_a_servo_that_integrates_its_control_holds_a_speed(tmp_path: Path) -> None:
+    before, servo = cart("cart.xml"), r'<intvelocity \1 kp="10" actrange="-9 9"'
+    text = re.sub(r'<velocity (joint="[^"]*") kv="10"', servo, before)
+    assert text != before
+    assert not told_of("position", read(tmp_path, text, "cart.xml"))
+
+
+WHEELS = [
+    f"{side}_{end}_joint"
+    for side in ("left", "right")
+    for end in ("rear", "middle", "front", "flipper_root", "flipper_tip")
+]
+MOST = "left_rear_joint, left_middle_joint, left_front_joint, right_rear_joint and 6 more"
+
+
+def transmission(of_joint: str, of_actuator: str = "") -> str:
+    """Transmissions of all wheels, with what joint and actuator take."""
+    return "".join(
+        f"""<transmission name="t"><joint name="{wheel}">{of_joint}</joint>
+        <actuator name="a">{of_actuator}</actuator></transmission>"""
+        for wheel in WHEELS
+    )
+
+
+def interface(kind: str) -> str:
+    return f"<hardwareInterface>{kind}JointInterface</hardwareInterface>"
+
+
+def ros2_control(*commands: str) -> str:
+    inner = "".join(f'<command_interface name="{each}"/>' for each in commands)
+    inner += '<state_interface name="position"/>'
+    joints = "".join(f'<joint name="{wheel}">{inner}</joint>' for wheel in WHEELS)
+    return f"""<ros2_control name="r" type="system">{joints}</ros2_control>"""
+
+
+def plugin() -> str:
+    """One that drives all wheels."""
+    joints = "".join(f"<left_joint>{wheel}</left_joint>" for wheel in WHEELS)
+    return f'<gazebo><plugin name="diff_drive" filename="d.so">{joints}</plugin></gazebo>'
+
+
+@pytest.mark.parametrize(
+    ("parts", "is_told"),
+    [
+        (transmission(interface("hardware_interface/Position")), True),
+        (transmission("", interface("Position")), True),
+        (transmission(interface("Velocity"), interface("Position")), False),
+        (transmission(interface("PosVel")), False),
+        (transmission(""), False),
+        (transmission(interface("Position")) + transmission(interface("Effort")), False),
+        (ros2_control("position"), True),
+        (ros2_control("position", "velocity"), False),
+        (ros2_control(), False),
+        (ros2_control("position") + plugin(), False),
+    ],
+)
+def test_wheels_whose_position_a_urdf_commands_get_a_warning(
+    tmp_path: Path, parts: str, *, is_told: bool
+) -> None:
+    text = cart("cart.urdf").replace("</robot>", f"{parts}</robot>")
+    told = told_of("position of their", read(tmp_path, text))
+    assert [each.partition(", got ")[2] for each in told] == ([MOST] if is_told else [])

@@ -87,6 +87,7 @@ class Assembly:
         castors = gear.remove_castors(view.middle, tolerance)
         self.warn_of_undriven(gear, castors)
         self.warn_of_coupled(gear)
+        self.warn_of_held(gear)
         pairs = pair_runners(gear.runners, view)
         arms = arm_pairs(log, gear.arms, view)
         is_belt = is_belted(gear.runners, str(tree.at))
@@ -183,9 +184,7 @@ class Assembly:
 
     def warn_of_undriven(self, gear: RunningGear, castors: list[Runner]) -> None:
         """Warn of wheels without a motor if others have one."""
-        on_flippers = [runner for arm in gear.arms for runner in arm.runners]
-        every = [*gear.runners, *on_flippers]
-        undriven = [runner for runner in every if runner.name in gear.passive]
+        undriven = [runner for runner in gear.every_runner if runner.name in gear.passive]
         for wheels, reason in (
             (castors, "roll freely in the middle: read as skids of the belly, which slide"),
             (
@@ -199,12 +198,27 @@ class Assembly:
 
     def warn_of_coupled(self, gear: RunningGear) -> None:
         """Warn of couplings of wheels or flippers with other joints."""
-        runners = [*gear.runners, *(runner for arm in gear.arms for runner in arm.runners)]
-        joints = {runner.joint.name for runner in runners if runner.joint is not None}
+        joints = {runner.joint.name for runner in gear.every_runner if runner.joint is not None}
         joints |= {arm.joint.name for arm in gear.arms}
         for each in self.log.tree.couplings:
             if joints.intersection(each.joints):
                 self.log.add_warning(f"{each.at}: {each.name}", each.value, each.reason)
+
+    def warn_of_held(self, gear: RunningGear) -> None:
+        """Warn of wheels that springs or servos of their position keep from turning on."""
+        joints = [runner.joint for runner in gear.every_runner if runner.joint is not None]
+        sprung = [joint for joint in joints if joint.stiffness > 0.0]
+        if sprung:
+            names = list_names([joint.name for joint in sprung], _SHOWN)
+            path = f"{sprung[0].dynamics_at}: stiffness[{names}]"
+            value = f"{sprung[0].stiffness:.4g} N m/rad"
+            reason = "is left out: in the file springs hold these wheels back"
+            self.log.add_warning(path, value, reason)
+        held = self.log.tree.held
+        names_held = [joint.name for joint in joints if joint.name in held]
+        if names_held:
+            reason = "control the position of their wheels, which here are driven at a speed"
+            self.log.add_warning(held[names_held[0]], list_names(names_held, _SHOWN), reason)
 
     def track_mass(self, pairs: list[Pair], mass: float) -> float:
         """[kg] Return the mass that moves at track speed: moment of inertia / radius squared.

@@ -174,6 +174,11 @@ class _Model:
             links=tuple(sorted(links, key=lambda link: order.index(link.name))),
             joints=joints,
             driven={name: self.where(motor) for name, motor in self.motors.items()},
+            held={
+                motor["joint"]: self.where(motor)
+                for motor in self.answer["motors"]
+                if motor["joint"] and motor["holds"]
+            },
             couplings=tuple(
                 Coupling(
                     joints=tuple(each["joints"]),
@@ -541,6 +546,7 @@ def _motor(model: Any, actuator: Any) -> Item:
         "damping": float(model.actuator_damping[i]) * gear**2,
         "armature": float(model.actuator_armature[i]) * gear**2,
         "gain": -float(bias[2]) * gear**2 if is_of_speed else None,
+        "holds": not is_integrator and bool(bias[1] < 0.0),
         "velocity": abs(gain / held) * most / gear if has_speed and most is not None else None,
         "line": _line(actuator),
     }

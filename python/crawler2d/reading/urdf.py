@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections import defaultdict
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
@@ -47,6 +48,9 @@ from crawler2d.reading.parts import (
 __all__ = ["read_urdf"]
 
 _WORLD = "world"  # A joint from an empty link of this name fixes a robot to the world.
+
+# The interface of ros_control, with or without its package, and that of ros2_control.
+_POSITION = re.compile(r"^(.*/)?(PositionJointInterface|position)$")
 
 
 def read_urdf(root: Element, meshes: Meshes, *, leave_out: bool, is_bullet: bool) -> Tree:
@@ -134,6 +138,7 @@ def read_urdf(root: Element, meshes: Meshes, *, leave_out: bool, is_bullet: bool
             complete = partial(_moving, joint, element, poses[child])
             joint = joint_or_fixed(joint, complete, carries=child in carriers, warnings=warnings)
         joints[child] = joint
+    by_plugin = driven_by(plugins)
     return Tree(
         name=root.attributes.get("name", ""),
         format="URDF",
@@ -141,7 +146,8 @@ def read_urdf(root: Element, meshes: Meshes, *, leave_out: bool, is_bullet: bool
         links=tuple(links),
         joints=joints,
         plugins=plugins,
-        driven=driven_by(plugins) | _driven(root),
+        driven=by_plugin | _driven(root),
+        held={name: at for name, at in _held(root).items() if name not in by_plugin},
         commanded=dict(_commanded(root)),
         couplings=tuple(
             mimic_coupling(
@@ -282,16 +288,35 @@ def _given(element: Element, names: Iterable[str]) -> dict[str, Limit]:
     }
 
 
+def _motors(root: Element) -> Iterator[tuple[Element, list[tuple[str, Where]]]]:
+    """Yield the joints of transmissions and of ros2_control, each with what may be commanded."""
+    for block in root.all("transmission"):
+        for joint in block.all("joint"):
+            own = list(joint.all("hardwareInterface"))
+            others = (i for each in block.all("actuator") for i in each.all("hardwareInterface"))
+            yield joint, [(each.text, each.where) for each in own or others]
+    for block in root.all("ros2_control"):
+        for joint in block.all("joint"):
+            commands = list(joint.all("command_interface"))
+            if commands:
+                yield joint, [(each.attributes.get("name", ""), each.where) for each in commands]
+
+
 def _driven(root: Element) -> dict[str, Where]:
     """Return the joints that a transmission or ros2_control drives, with their lines."""
-    joints = [
-        joint
-        for tag in ("transmission", "ros2_control")
-        for block in root.all(tag)
-        for joint in block.all("joint")
-        if tag == "transmission" or any(joint.all("command_interface"))
-    ]
-    return {joint.attribute("name"): joint.where for joint in joints}
+    return {joint.attribute("name"): joint.where for joint, _ in _motors(root)}
+
+
+def _held(root: Element) -> dict[str, Where]:
+    """Return those of which only the position may be commanded, with the lines that say so."""
+    commands: dict[str, list[tuple[str, Where]]] = {}
+    for joint, own in _motors(root):
+        commands.setdefault(joint.attribute("name"), []).extend(own)
+    return {
+        name: every[0][1]
+        for name, every in commands.items()
+        if every and all(_POSITION.search(text) for text, _ in every)
+    }
 
 
 def _commanded(root: Element) -> Iterator[tuple[str, Limit]]:

@@ -186,6 +186,11 @@ class RunningGear:
     moving: list[tuple[Joint, Link, Shape]] = field(default_factory=list)
     passive: set[str] = field(default_factory=set)
 
+    @property
+    def every_runner(self) -> list[Runner]:
+        """Wheels and drums of the chassis and of the flippers."""
+        return [*self.runners, *(runner for arm in self.arms for runner in arm.runners)]
+
     def remove_castors(self, middle: float, tolerance: float) -> list[Runner]:
         """Turn the undriven wheels in the middle into skids of the chassis, and return them."""
         castors = [
