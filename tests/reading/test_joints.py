@@ -164,3 +164,80 @@ def test_wheels_whose_position_a_urdf_commands_get_a_warning(
     text = cart("cart.urdf").replace("</robot>", f"{parts}</robot>")
     told = told_of("position of their", read(tmp_path, text))
     assert [each.partition(", got ")[2] for each in told] == ([MOST] if is_told else [])
+
+
+def one_changed(name: str, old: str, new: str) -> str:
+    """A cart, a figure of whose left rear wheel is another one."""
+    text = cart(name)
+    start = text.index('joint="left_rear' if name.endswith(".xml") else '<joint name="left_rear')
+    assert old in text[start:]
+    return text[:start] + text[start:].replace(old, new, 1)
+
+
+@pytest.mark.parametrize(
+    ("name", "old", "new", "lines"),
+    [
+        ("cart.sdf", "<effort>5<", "<effort>50<", "21, 57"),
+        ("cart.urdf", 'effort="5"', 'effort="50"', "17, 50"),
+        ("cart.xml", "-5 5", "-50 50", "75, 78"),
+    ],
+)
+def test_torques_that_differ_left_and_right_get_a_warning(
+    tmp_path: Path, name: str, old: str, new: str, lines: str
+) -> None:
+    """Five wheels a side, of 5 N m each, of which that at the tip counts twice."""
+    reading = read(tmp_path, one_changed(name, old, new), name)
+    (told,) = told_of("side to side", reading)
+    assert told.startswith(f"{name}:{lines}: effort[left_rear_joint, right_rear_joint] differs")
+    assert told.endswith("the mean of their sums is used, got 75 N m left and 30 N m right")
+    assert reading.robot.drivetrain.max_torque == pytest.approx(52.5)
+
+
+@pytest.mark.parametrize(("effort", "is_told"), [("5.3", False), ("5.4", True)])
+def test_torques_may_differ_by_a_hundredth(tmp_path: Path, effort: str, *, is_told: bool) -> None:
+    """Of the 30 N m of a side."""
+    text = one_changed("cart.urdf", 'effort="5"', f'effort="{effort}"')
+    assert bool(told_of("side to side", read(tmp_path, text))) is is_told
+
+
+def test_motors_of_one_side_alone_get_a_warning(tmp_path: Path) -> None:
+    joints = "".join(f"<left_joint>{wheel}</left_joint>" for wheel in WHEELS[:5])
+    drive = f'<gazebo><plugin name="diff_drive" filename="d.so">{joints}</plugin></gazebo>'
+    text = cart("cart.urdf").replace("</robot>", f"{drive}</robot>")
+    (told,) = told_of("side to side", read(tmp_path, text))
+    assert told.endswith("got 30 N m left and 0 N m right")
+
+
+def test_gains_that_differ_left_and_right_get_a_warning(tmp_path: Path) -> None:
+    text = one_changed("cart.xml", 'kv="10"', 'kv="30"')
+    reading = read(tmp_path, text, "cart.xml")
+    (told,) = told_of("side to side", reading)
+    assert told.startswith("cart.xml:75, 78: gain[left_rear_joint, right_rear_joint] differs")
+    assert told.endswith("got 100 N m s/rad left and 80 N m s/rad right")
+    assert reading.robot.drivetrain.controller == c2d.PI(gain=90.0)
+
+
+@pytest.mark.parametrize(("velocity", "is_told"), [("9.95", False), ("8", True), ("20", False)])
+def test_speeds_that_differ_left_and_right_get_a_warning(
+    tmp_path: Path, velocity: str, *, is_told: bool
+) -> None:
+    """A wheel that could be faster than the others of its side makes no side faster."""
+    text = one_changed("cart.urdf", 'velocity="10"', f'velocity="{velocity}"')
+    told = told_of("side to side", read(tmp_path, text))
+    of_slower = "cart.urdf:17: velocity differs from side to side: both have that of the slower one"
+    assert told == ([f"{of_slower}, got 1 m/s left and 1.25 m/s right"] if is_told else [])
+
+
+def test_a_side_without_a_limit_of_speed_has_none(tmp_path: Path) -> None:
+    text = cart("cart.urdf")
+    start = text.index('<link name="right_rear')
+    text = text[:start] + re.sub(r' velocity="[12]0"', "", text[start:])
+    told = told_of("side to side", read(tmp_path, text))
+    assert [each.partition("got ")[2] for each in told] == ["1.25 m/s left and no limit right"]
+
+
+def test_speeds_beyond_that_of_the_drive_do_not_matter(tmp_path: Path) -> None:
+    drive = '<gazebo><plugin name="DiffDrive" filename="d"><max_velocity>0.5</max_velocity>'
+    text = one_changed("cart.urdf", 'velocity="10"', 'velocity="8"')
+    text = text.replace("</robot>", f"{drive}</plugin></gazebo></robot>")
+    assert not told_of("side to side", read(tmp_path, text))

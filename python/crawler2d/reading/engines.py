@@ -38,13 +38,14 @@ FASTEST = 100.0
 """[rad/s] and [m/s] Larger speed limits mean no limit."""
 
 _ALIKE = 0.01
-"""[-] Tolerated difference of rotors or forces, relative to the largest, as files round them."""
+"""[-] Tolerated difference of rotors, forces or sides, relative to the largest, as files round."""
 
 _LARGE = 0.1
 """[-] Smaller losses of torque are within the uncertainty of a stated torque."""
 
 _UNITS = {
     "effort": "N m",
+    "gain": "N m s/rad",
     "velocity": "rad/s",
     "damping": "N m s/rad",
     "friction": "N m",
@@ -367,6 +368,7 @@ def drivetrain_of(
     tree, engine = log.tree, log.engine
     log.notes.append(ENGINES[engine].description(is_belt=isinstance(tracks[0], BeltTrack)))
     speed, speed_source = _speed(tree, [*pairs, *on_flippers])
+    _warn_of_speeds(log, [*pairs, *on_flippers], speed)
     alone, _ = _speed(tree, pairs)
     if speed < alone:
         log.notes.append(
@@ -393,6 +395,8 @@ def drivetrain_of(
         torque = 0.5 * sum(forces) * radius
         torque_source = lines([joint.effort_at for joint, _ in motors], "sum of one side")
         sharing_source = lines([joint.at for joint in joints])
+        pulls = {joint.name: (joint.effort or 0.0) * radius / own for joint, own in motors}
+        _warn_of_sides(log, "effort", pulls, sides)
     sharing = _sharing(log, motors, tracks) if has_limits and motors == wheels else "track"
     none = f"{tree.at}: none"
     gaining, gaining_source = _acceleration(tree, "max", _ACCELERATION)
@@ -409,7 +413,7 @@ def drivetrain_of(
     inertias = [sum(side) for side in rotors]
     if sharing == "wheel":
         inertias = [len(side) * rotor for side in rotors for rotor in side]
-    controller = _controller(log, motors, of_chassis, radius)
+    controller = _controller(log, motors, of_chassis, sides, radius)
     gain_torque = torque if controller is None else controller.gain * speed / radius
     if gain_torque < torque and has_limits:
         path = f"{motors[0][0].gain_at}: gain[{motors[0][0].name}]"
@@ -459,8 +463,17 @@ def _states(joint: Joint, *names: str) -> bool:
 
 def _speed(tree: Tree, pairs: list[Pair]) -> tuple[float, str]:
     """[m/s] Return the largest speed of the tracks: the slowest of all their wheels sets it."""
-    limits = _of_plugins(tree, _SPEEDS)
-    for runner in (each for pair in pairs for each in pair.both):
+    limits = _in_range(_of_plugins(tree, _SPEEDS))
+    limits += _speeds(tree, [runner for pair in pairs for runner in pair.both])
+    if not limits:
+        return _SPEED, estimate("that of Robot.simple: the file has no limit")
+    return _least(limits)
+
+
+def _speeds(tree: Tree, runners: Sequence[Runner]) -> list[tuple[float, Where]]:
+    """[m/s] Return the largest speeds of wheels and drums, as far as they have any."""
+    limits = []
+    for runner in runners:
         if runner.joint is None:
             limits.append((runner.shape.surface_speed, runner.shape.at))
             continue
@@ -469,10 +482,60 @@ def _speed(tree: Tree, pairs: list[Pair]) -> tuple[float, str]:
         if runner.joint.name in tree.commanded:
             rate, where = tree.commanded[runner.joint.name]
             limits.append((rate * runner.radius, where))
-    limits = [(speed, where) for speed, where in limits if 0.0 < speed <= FASTEST]
-    if not limits:
-        return _SPEED, estimate("that of Robot.simple: the file has no limit")
-    return _least(limits)
+    return _in_range(limits)
+
+
+def _in_range(limits: Sequence[tuple[float, Where]]) -> list[tuple[float, Where]]:
+    return [(speed, where) for speed, where in limits if 0.0 < speed <= FASTEST]
+
+
+def _warn_of_speeds(log: ReadLog, pairs: Sequence[Pair], speed: float) -> None:
+    """Warn if one side is slower than the other, and sets the speed [m/s] of both."""
+    every = [
+        _speeds(log.tree, [each for pair in pairs for each in getattr(pair, side)])
+        for side in _SIDES
+    ]
+    slowest = [min((own for own, _ in side), default=math.inf) for side in every]
+    if min(slowest) > speed or math.isclose(*slowest, rel_tol=_ALIKE):
+        return
+    _, source = _least(every[slowest.index(min(slowest))])
+    left, right = (f"{own:.4g} m/s" if own < math.inf else "no limit" for own in slowest)
+    reason = "differs from side to side: both have that of the slower one"
+    log.add_warning(f"{source}: velocity", f"{left} left and {right} right", reason)
+
+
+def _warn_of_sides(
+    log: ReadLog,
+    name: str,
+    figures: Mapping[str, float],
+    sides: Sequence[Sequence[tuple[Joint, float]]],
+) -> None:
+    """Warn if the sums of both sides differ, as one drive turns both.
+
+    Parameters
+    ----------
+    log : ReadLog
+        Takes the warning.
+    name : {"effort", "gain"}
+        What is summed.
+    figures : mapping of str to float
+        It by the name of each joint, at the radius of the robot's rear end.
+    sides : sequence of sequence of (Joint, float)
+        The joints of the left and of the right side, in the same order.
+    """
+    left, right = (sum(figures.get(joint.name, 0.0) for joint, _ in side) for side in sides)
+    if math.isclose(left, right, rel_tol=_ALIKE):
+        return
+    unlike = [
+        joint
+        for (one, _), (other, _) in zip(*sides, strict=False)
+        for joint in (one, other)
+        if not math.isclose(*(figures.get(each.name, 0.0) for each in (one, other)))
+    ]
+    names = list_names([joint.name for joint in unlike])
+    path = f"{lines([getattr(joint, f'{name}_at') for joint in unlike])}: {name}[{names}]"
+    value = f"{left:.4g} {_UNITS[name]} left and {right:.4g} {_UNITS[name]} right"
+    log.add_warning(path, value, "differs from side to side: the mean of their sums is used")
 
 
 def _acceleration(tree: Tree, which: str, usual: float) -> tuple[float, str]:
@@ -545,6 +608,7 @@ def _controller(
     log: ReadLog,
     wheels: Sequence[tuple[Joint, float]],
     of_chassis: Sequence[tuple[Joint, float]],
+    sides: Sequence[Sequence[tuple[Joint, float]]],
     radius: float,
 ) -> PI | None:
     """Return the controller of one side: the servos of its wheels, if the engine has them.
@@ -556,11 +620,12 @@ def _controller(
     if not ENGINES[log.engine].has_gain or not servos or any(each in of_chassis for each in others):
         log.cite("robot.drivetrain", controller=f"{log.at}: none")
         return None
-    gains = [(joint.gain or 0.0) * (radius / own) ** 2 for joint, own in servos]
+    gains = {joint.name: (joint.gain or 0.0) * (radius / own) ** 2 for joint, own in servos}
+    _warn_of_sides(log, "gain", gains, sides)
     places = lines([joint.gain_at for joint, _ in servos], "sum of one side")
     log.sources["robot.drivetrain.controller"] = places
     if others:
         names = list_names([joint.name for joint, _ in others])
         reason = "have no servo of their speed: the gain of a side is that of its other wheels"
         log.add_warning(others[0][0].gain_at, names, reason)
-    return PI(gain=0.5 * sum(gains))
+    return PI(gain=0.5 * sum(gains.values()))
