@@ -241,3 +241,20 @@ def test_speeds_beyond_that_of_the_drive_do_not_matter(tmp_path: Path) -> None:
     text = one_changed("cart.urdf", 'velocity="10"', 'velocity="8"')
     text = text.replace("</robot>", f"{drive}</plugin></gazebo></robot>")
     assert not told_of("side to side", read(tmp_path, text))
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        ('effort="30"', 'effort="3"', "robot.flippers.torque_limit differs from flipper to flip"),
+        ('velocity="1"', 'velocity="0.5"', "robot.flippers.rate_limit differs from flipper to fl"),
+        ('effort="30"', 'effort="29.8"', ""),
+    ],
+)
+def test_limits_that_differ_from_flipper_to_flipper_get_a_warning(
+    tmp_path: Path, old: str, new: str, told: str
+) -> None:
+    text = cart("cart.urdf")
+    assert text.count(old) == 2
+    found = told_of("flipper to flipper", read(tmp_path, text.replace(old, new, 1)))
+    assert [each.startswith(told) for each in found] == ([True] if told else [])

@@ -40,7 +40,7 @@ _NEAR = 0.05
 """[-] Largest distance of a pivot from the end axle, relative to the axle distance."""
 
 _ALIKE = 0.01
-"""[-] Tolerated difference between the masses of two arms, for scales and cables."""
+"""[-] Tolerated difference between the masses or limits of two arms, for scales and cables."""
 
 _DIRECTIONS = 360
 """Directions in which shapes are compared with wheels; the error is 0.004 % of a length."""
@@ -435,6 +435,7 @@ def _limits(log: ReadLog, ends: list[AtEnd], mass: float) -> tuple[float, float]
     if len(rates) == len(motors):
         rate = min(rates)
         rate_source = lines([joint.velocity_at for joint, _ in motors])
+        _warn_of_unlike(log, "rate_limit", rates, "rad/s")
     log.sources["robot.flippers.rate_limit"] = rate_source
     torques = [
         joint.effort / count for joint, count in motors if joint.effort and not joint.is_locked
@@ -445,5 +446,14 @@ def _limits(log: ReadLog, ends: list[AtEnd], mass: float) -> tuple[float, float]
     if len(torques) == len(motors):
         torque = min(torques)
         torque_source = lines([joint.effort_at for joint, _ in motors])
+        _warn_of_unlike(log, "torque_limit", torques, "N m")
     log.sources["robot.flippers.torque_limit"] = torque_source
     return rate, torque
+
+
+def _warn_of_unlike(log: ReadLog, name: str, limits: Sequence[float], unit: str) -> None:
+    """Warn of limits of flippers that differ, as a robot has one kind."""
+    if not math.isclose(min(limits), max(limits), rel_tol=_ALIKE):
+        value = f"{min(limits):.4g} to {max(limits):.4g} {unit}"
+        reason = "differs from flipper to flipper: the least is used"
+        log.add_warning(f"robot.flippers.{name}", value, reason)
