@@ -40,8 +40,9 @@ test-rust: | tools
 	MAKEFLAGS= $(CARGO_TEST) --doc
 	$(CARGO_TEST) $(UNIT_TESTS)
 # In the order of `testpaths`: sorted by their number of tests, files of few long ones would come last, on one core.
+# `check` tests the walls.
 test-python: $(VENV)/.built
-	$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder
+	$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder --ignore=tests/walls
 test-debug: | tools
 	$(CARGO) test --package crawler2d-core --test facts every_build
 

@@ -168,7 +168,7 @@ fn equal_commands_drive_towards_plus_x_and_minus_x_alike() {
         // over several. On arms the robot stands on those that go round the tips, which are faster than the belt by
         // turns.
         let (phases, limit) = if strikes(name) {
-            (few_or_many(2, 8), 0.03)
+            (few_or_many(2, 8), 0.015)
         } else {
             (1, 2e-7)
         };
@@ -177,7 +177,7 @@ fn equal_commands_drive_towards_plus_x_and_minus_x_alike() {
                 let mut s = s.clone();
                 s.start.track_phase = 0.048 * f64::from(phase) / f64::from(phases);
                 let start = after(&s, 0.0).reading().position.x;
-                after(&s, 3.0).reading().position.x - start
+                after(&s, 2.0).reading().position.x - start
             };
             (0..phases).map(from).sum::<f64>() / f64::from(phases)
         };
