@@ -467,7 +467,7 @@ class Tree:
     held : mapping of str to Where
         Those of which the motor controls the position alone, and the line that says so.
     commanded : mapping of str to (float, Where)
-        [rad/s] Largest speed that a joint is told to have, and its line.
+        [rad/s] Largest speed that may be commanded of a joint, and its line.
     tracks : tuple of str
         Links whose surface is moved from outside the file.
     couplings : tuple of Coupling

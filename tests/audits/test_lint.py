@@ -386,7 +386,7 @@ def test_a_plugin_that_has_left_for_right_is_found_but_not_in_old_drives(tmp_pat
     swapped = [*in_plugin(*((f"left_wheel_{n}", f"right_wheel_{n}") for n in EACH))]
     (found,) = of_rover(tmp_path, "opposed", *swapped)
     assert found.severity == "warning"
-    assert "told to turn left, the robot turns right" in found.message
+    assert "asked to turn left, the robot turns right" in found.message
     old = [(f"{side}_joint>", f"{side}Joint>") for side in ("left", "right")]
     assert of_rover(tmp_path, "opposed", *swapped, *old) == []
 
@@ -415,21 +415,21 @@ def test_a_plugin_with_another_radius_than_its_wheels_is_found(
 
 
 @pytest.mark.parametrize(
-    ("name", "size", "told"),
+    ("name", "size", "said"),
     [
-        ("wheel_radius", "0.3", "0.3 m, but theirs is 0.1 m: told to drive at 0.5 m/s, it turns"
+        ("wheel_radius", "0.3", "0.3 m, but theirs is 0.1 m: asked to drive at 0.5 m/s, it turns"
          " them for 0.167 m/s"),
-        ("wheelDiameter", "0.1", "0.1 m, but theirs is 0.2 m: told to drive at 0.25 m/s, it turns"
+        ("wheelDiameter", "0.1", "0.1 m, but theirs is 0.2 m: asked to drive at 0.25 m/s, it turns"
          " them for 0.5 m/s"),
     ],
 )  # fmt: skip
 def test_lint_says_how_fast_a_drive_with_another_radius_is(
-    tmp_path: Path, name: str, size: str, told: str
+    tmp_path: Path, name: str, size: str, said: str
 ) -> None:
     sized = f"<{name}>{size}</{name}><max_linear_velocity>0.5</max_linear_velocity>"
     (found,) = of_rover(tmp_path, "wheel radius", ("<wheel_radius>0.1</wheel_radius>", sized))
     assert (found.severity, found.where) == ("warning", "rover.sdf:115")
-    assert told in found.message
+    assert said in found.message
 
 
 @pytest.mark.parametrize(("radius", "count"), [("0.05", 0), ("0.042", 0), ("0.035", 1)])

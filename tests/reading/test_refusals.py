@@ -184,7 +184,7 @@ def test_wheels_with_upright_or_slanted_axles_are_refused(tmp_path: Path) -> Non
 @pytest.mark.parametrize(
     ("how", "reason"),
     [
-        ({"type": "floating"}, "left_front is moved by a joint that is no hinge but floating"),
+        ({"type": "floating"}, "left_front is on a joint that is no hinge: floating"),
         (
             {"type": "revolute", "limit": LIMIT},
             "left_front turns by at most 367 degrees",
@@ -196,7 +196,7 @@ def test_wheels_with_upright_or_slanted_axles_are_refused(tmp_path: Path) -> Non
         ),
         (
             {"origin": ACROSS.replace("rpy", 'xyz="0.003 0 0" rpy')},
-            "left_front has its middle 3 mm beside the axis on which it turns",
+            "left_front has its centre 3 mm off the axis on which it turns",
         ),
     ],
 )

@@ -11,10 +11,9 @@ from crawler2d.model_tree import Joint, Link, Plugin, Where
 from crawler2d.reading.log import lines, list_names
 from crawler2d.reading.parts import driven_on, is_drive
 from crawler2d.reading.reading import Reading
+from crawler2d.reading.speeds import SIDES
 
 __all__ = ["opposed", "other_radius"]
-
-_SIDES = ("left", "right")
 
 _RADII = {"wheel_radius": 1.0, "wheelRadius": 1.0, "wheel_diameter": 0.5, "wheelDiameter": 0.5}
 """[-] Settings of the size of wheels, each with its ratio to the radius."""
@@ -46,7 +45,7 @@ class _Wheel:
 def opposed(reading: Reading) -> Iterator[Broken]:
     """Find wheels that a drive turns against others, or has on the other side."""
     for plugin in filter(is_drive, reading.tree.plugins):
-        by_side = {side: _wheels(reading, driven_on(plugin, side)) for side in _SIDES}
+        by_side = {side: _wheels(reading, driven_on(plugin, side)) for side in SIDES}
         yield from _opposite_axes(by_side)
         yield from _other_sides(plugin, by_side)
 
@@ -60,19 +59,19 @@ def other_radius(reading: Reading) -> Iterator[Broken]:
             radius = value * _RADII[name]
             off = [
                 wheel
-                for side in _SIDES
+                for side in SIDES
                 for wheel in _wheels(reading, _with_size(driven_on(plugin, side), sizes, size))
                 if not wheel.is_of_radius(radius)
             ]
             if off:
                 worst = max(off, key=lambda wheel: abs(math.log(wheel.radius / radius)))
                 ratio, fastest = worst.radius / radius, reading.robot.drivetrain.max_speed
-                told = fastest / max(1.0, ratio)
+                asked = fastest / max(1.0, ratio)
                 message = (
                     f"{_names(off)}: {name} of the plugin is"
-                    f" {value:.4g} m, but theirs is {worst.radius / _RADII[name]:.4g} m: told to"
-                    f" drive at {told:.3g} m/s, it turns them for {told * ratio:.3g} m/s; here they"
-                    " turn as told"
+                    f" {value:.4g} m, but theirs is {worst.radius / _RADII[name]:.4g} m: asked to"
+                    f" drive at {asked:.3g} m/s, it turns them for {asked * ratio:.3g} m/s; here"
+                    " they turn as asked"
                 )
                 yield message, str(where), ""
 
@@ -107,21 +106,21 @@ def _opposite_axes(by_side: dict[str, list[_Wheel]]) -> Iterator[Broken]:
     odd, others = (back, ahead) if len(back) <= len(ahead) else (ahead, back)
     if all(len({wheel.turns_ahead for wheel in wheels}) == 1 for wheels in by_side.values()):
         message = (
-            "the axes of the wheels on the left are opposite to those on the right: told to drive"
+            "the axes of the wheels on the left are opposite to those on the right: asked to drive"
             " ahead, the plugin turns the robot on the spot; here both sides turn alike"
         )
     else:
         message = (
             f"{_names(odd)}: opposite in axis to {_names(others)}, which the same plugin turns:"
-            " told one speed, they work against each other; here all turn alike"
+            " asked for one speed, they work against each other; here all turn alike"
         )
     yield message, lines([wheel.joint.at for wheel in odd]), ""
 
 
 def _other_sides(plugin: Plugin, by_side: dict[str, list[_Wheel]]) -> Iterator[Broken]:
     """Find wheels that a drive has on the other side: some, or all of both sides."""
-    on = [wheel for side in _SIDES for wheel in by_side[side] if wheel.side == side]
-    off = [wheel for side in _SIDES for wheel in by_side[side] if wheel.side != side]
+    on = [wheel for side in SIDES for wheel in by_side[side] if wheel.side == side]
+    off = [wheel for side in SIDES for wheel in by_side[side] if wheel.side != side]
     if any(len({wheel.side for wheel in wheels}) > 1 for wheels in by_side.values()):
         odd = off if len(off) <= len(on) else on
         message = (
@@ -132,7 +131,7 @@ def _other_sides(plugin: Plugin, by_side: dict[str, list[_Wheel]]) -> Iterator[B
     # Old drives of Gazebo Classic, with leftJoint and rightJoint, confuse the sides themselves.
     elif off and not on and plugin.values("left_joint", "right_joint"):
         message = (
-            "the plugin has the wheels on the right as those on the left: told to turn left, the"
+            "the plugin has the wheels on the right as those on the left: asked to turn left, the"
             " robot turns right, or its forward direction is another one"
         )
         yield message, lines([wheel.named_at for wheel in off]), "warning"

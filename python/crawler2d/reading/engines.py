@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -13,13 +12,21 @@ from crawler2d.model_tree import Joint, Shape, Tree, Where
 from crawler2d.parameters.drivetrain import PI, Drivetrain
 from crawler2d.parameters.track import BeltTrack, LineOfWheels, Track
 from crawler2d.reading.log import ReadLog, estimate, lines, list_names
-from crawler2d.reading.parts import is_drive, wheel_torques
+from crawler2d.reading.parts import wheel_torques
 from crawler2d.reading.running_gear import Pair, SideView
+from crawler2d.reading.speeds import (
+    ALIKE,
+    FASTEST,
+    SIDES,
+    acceleration_of,
+    deceleration_of,
+    speed_of,
+    warn_of_speeds,
+)
 from crawler2d.reading.wheels import Runner
 
 __all__ = [
     "ENGINES",
-    "FASTEST",
     "MARGIN",
     "WEIGHT",
     "Engine",
@@ -34,12 +41,6 @@ __all__ = [
 Engine = Literal["gz", "classic", "bullet", "mujoco", "isaac"]
 _SAME = 1e-9  # [-] Coefficients are as written, so equal ones differ by no more than this.
 
-FASTEST = 100.0
-"""[rad/s] and [m/s] Larger speed limits mean no limit."""
-
-_ALIKE = 0.01
-"""[-] Tolerated difference of rotors, forces or sides, relative to the largest, as files round."""
-
 _LARGE = 0.1
 """[-] Smaller losses of torque are within the uncertainty of a stated torque."""
 
@@ -52,21 +53,8 @@ _UNITS = {
     "armature": "kg m^2",
 }
 
-_SPEEDS = ("max_velocity", "max_linear_velocity", "linear_velocity/max_velocity")
-"""Settings of Gazebo's TrackController, DiffDrive and TrackedVehicle."""
-
-_RATES = ("_acceleration", "_linear_acceleration")
-"""Their names after "max" and "min"; TrackedVehicle has its own in ``linear_velocity``."""
-
-_RATES_OF_RIMS = ("max_wheel_acceleration", "wheelAcceleration")
-"""Those of Gazebo Classic, both ways, which its source code takes as m/s^2 of the rim."""
-
-_QUICKEST = 1e6  # [m/s^2]
-_SIDES = ("left", "right")
-
 _WITHIN_A_STEP = "the commanded speed is reached within one step, if the torque limit allows"
 _AT_ANY_LOAD = "the commanded speed at any load, as contact surface motion (from its source code)"
-_SPEED, _ACCELERATION, _DECELERATION = 1.0, 1.0, 4.0  # those of Robot.simple
 WEIGHT, MARGIN = 9.81, 1.6  # [m/s^2] and the margin of Robot.simple
 
 
@@ -289,7 +277,7 @@ def rotor_inertia(
         log.sources[path] = where
         return 0.0
     log.sources[path] = places
-    if not math.isclose(min(inertias), max(inertias), rel_tol=_ALIKE):
+    if not math.isclose(min(inertias), max(inertias), rel_tol=ALIKE):
         value = f"{min(inertias):.4g} to {max(inertias):.4g} kg m^2"
         log.add_warning(path, value, "differs from motor to motor: the mean is used")
     return sum(inertias) / len(inertias)
@@ -367,18 +355,18 @@ def drivetrain_of(
     """
     tree, engine = log.tree, log.engine
     log.notes.append(ENGINES[engine].description(is_belt=isinstance(tracks[0], BeltTrack)))
-    speed, speed_source = _speed(tree, [*pairs, *on_flippers])
-    _warn_of_speeds(log, [*pairs, *on_flippers], speed)
-    alone, _ = _speed(tree, pairs)
+    speed, speed_source = speed_of(tree, [*pairs, *on_flippers])
+    warn_of_speeds(log, [*pairs, *on_flippers], speed)
+    alone, _ = speed_of(tree, pairs)
     if speed < alone:
         log.notes.append(
             f"wheels on flippers limit the speed of all tracks to {speed:.3g} m/s: here these run"
             f" at one speed, and those of the chassis alone could at {alone:.3g} m/s"
         )
-    sides = [_wheels(tree, pairs, side, engine) for side in _SIDES]
+    sides = [_wheels(tree, pairs, side, engine) for side in SIDES]
     of_chassis = [wheel for side in sides for wheel in side]
     if of_chassis:  # not just a belt, whose force wheels on flippers do not state
-        arms = [_wheels(tree, on_flippers, side, engine) for side in _SIDES]
+        arms = [_wheels(tree, on_flippers, side, engine) for side in SIDES]
         sides = [[*own, *more] for own, more in zip(sides, arms, strict=True)]
     wheels = [wheel for side in sides for wheel in side]
     joints = [joint for joint, _ in wheels]
@@ -399,8 +387,8 @@ def drivetrain_of(
         _warn_of_sides(log, "effort", pulls, sides)
     sharing = _sharing(log, motors, tracks) if has_limits and motors == wheels else "track"
     none = f"{tree.at}: none"
-    gaining, gaining_source = _acceleration(tree, "max", _ACCELERATION)
-    slowing, slowing_source = _acceleration(tree, "min", _DECELERATION)
+    gaining, gaining_source = acceleration_of(tree)
+    slowing, slowing_source = deceleration_of(tree)
     log.cite("robot.drivetrain", max_speed=speed_source)
     log.cite("robot.drivetrain", max_acceleration=gaining_source, max_deceleration=slowing_source)
     log.cite("robot.drivetrain", max_torque=torque_source, torque_sharing=sharing_source)
@@ -461,49 +449,6 @@ def _states(joint: Joint, *names: str) -> bool:
     )
 
 
-def _speed(tree: Tree, pairs: list[Pair]) -> tuple[float, str]:
-    """[m/s] Return the largest speed of the tracks: the slowest of all their wheels sets it."""
-    limits = _in_range(_of_plugins(tree, _SPEEDS))
-    limits += _speeds(tree, [runner for pair in pairs for runner in pair.both])
-    if not limits:
-        return _SPEED, estimate("that of Robot.simple: the file has no limit")
-    return _least(limits)
-
-
-def _speeds(tree: Tree, runners: Sequence[Runner]) -> list[tuple[float, Where]]:
-    """[m/s] Return the largest speeds of wheels and drums, as far as they have any."""
-    limits = []
-    for runner in runners:
-        if runner.joint is None:
-            limits.append((runner.shape.surface_speed, runner.shape.at))
-            continue
-        if runner.joint.velocity:
-            limits.append((runner.joint.velocity * runner.radius, runner.joint.velocity_at))
-        if runner.joint.name in tree.commanded:
-            rate, where = tree.commanded[runner.joint.name]
-            limits.append((rate * runner.radius, where))
-    return _in_range(limits)
-
-
-def _in_range(limits: Sequence[tuple[float, Where]]) -> list[tuple[float, Where]]:
-    return [(speed, where) for speed, where in limits if 0.0 < speed <= FASTEST]
-
-
-def _warn_of_speeds(log: ReadLog, pairs: Sequence[Pair], speed: float) -> None:
-    """Warn if one side is slower than the other, and sets the speed [m/s] of both."""
-    every = [
-        _speeds(log.tree, [each for pair in pairs for each in getattr(pair, side)])
-        for side in _SIDES
-    ]
-    slowest = [min((own for own, _ in side), default=math.inf) for side in every]
-    if min(slowest) > speed or math.isclose(*slowest, rel_tol=_ALIKE):
-        return
-    _, source = _least(every[slowest.index(min(slowest))])
-    left, right = (f"{own:.4g} m/s" if own < math.inf else "no limit" for own in slowest)
-    reason = "differs from side to side: both have that of the slower one"
-    log.add_warning(f"{source}: velocity", f"{left} left and {right} right", reason)
-
-
 def _warn_of_sides(
     log: ReadLog,
     name: str,
@@ -524,7 +469,7 @@ def _warn_of_sides(
         The joints of the left and of the right side, in the same order.
     """
     left, right = (sum(figures.get(joint.name, 0.0) for joint, _ in side) for side in sides)
-    if math.isclose(left, right, rel_tol=_ALIKE):
+    if math.isclose(left, right, rel_tol=ALIKE):
         return
     unlike = [
         joint
@@ -536,31 +481,6 @@ def _warn_of_sides(
     path = f"{lines([getattr(joint, f'{name}_at') for joint in unlike])}: {name}[{names}]"
     value = f"{left:.4g} {_UNITS[name]} left and {right:.4g} {_UNITS[name]} right"
     log.add_warning(path, value, "differs from side to side: the mean of their sums is used")
-
-
-def _acceleration(tree: Tree, which: str, usual: float) -> tuple[float, str]:
-    """[m/s^2] Return the limit of acceleration ("max") or deceleration ("min", stated below 0)."""
-    names = [f"{which}{name}" for name in _RATES]
-    stated = _of_plugins(tree, [*names, f"linear_velocity/{names[0]}", *_RATES_OF_RIMS])
-    limits = [(abs(rate), where) for rate, where in stated if 0.0 < abs(rate) <= _QUICKEST]
-    return _least(limits) if limits else (usual, estimate("that of Robot.simple"))
-
-
-def _of_plugins(tree: Tree, names: Sequence[str]) -> list[tuple[float, Where]]:
-    """List the numbers that plugins of drives state under some names."""
-    found = []
-    for plugin in tree.plugins:
-        if is_drive(plugin) or "track" in f"{plugin.name} {plugin.filename}".lower():
-            for text, where in plugin.values(*names):
-                with contextlib.suppress(ValueError):
-                    found.append((float(text), where))
-    return found
-
-
-def _least(limits: Sequence[tuple[float, Where]]) -> tuple[float, str]:
-    """Return the smallest limit and its line."""
-    least = min(limit for limit, _ in limits)
-    return least, lines([where for each, where in limits if each == least])
 
 
 def _wheels(tree: Tree, pairs: Sequence[Pair], side: str, engine: str) -> list[tuple[Joint, float]]:
@@ -589,7 +509,7 @@ def _sharing(
     track, *others = tracks
     efforts = [joint.effort for joint, _ in motors if joint.effort]  # of all: they have limits
     forces = [effort / own for effort, (_, own) in zip(efforts, motors, strict=True)]
-    is_even = math.isclose(min(forces), max(forces), rel_tol=_ALIKE)
+    is_even = math.isclose(min(forces), max(forces), rel_tol=ALIKE)
     has_belt = any(isinstance(other, BeltTrack) for other in others)
     is_line = isinstance(track, LineOfWheels) and not has_belt
     if not is_line or not (is_even or len(set(efforts)) == 1):

@@ -14,7 +14,6 @@ from crawler2d.model_tree import Array, Joint, Where
 from crawler2d.parameters.flippers import Flippers
 from crawler2d.parameters.track import BeltTrack, HybridWheels, LineOfWheels, Track
 from crawler2d.reading.engines import (
-    FASTEST,
     MARGIN,
     WEIGHT,
     report_losses,
@@ -24,6 +23,7 @@ from crawler2d.reading.engines import (
 )
 from crawler2d.reading.log import ReadLog, estimate, lines, list_names
 from crawler2d.reading.running_gear import Pair, SideView, centers, is_belted, pair_runners
+from crawler2d.reading.speeds import FASTEST
 from crawler2d.reading.tracks import (
     BELT_TOLERANCE,
     Base,

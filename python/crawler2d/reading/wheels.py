@@ -346,7 +346,7 @@ def _faults(link: Link, shape: Shape, joint: Joint | None, tree: Tree) -> Iterat
         yield "is moved by no joint"
         return
     if joint.kind != "hinge":
-        yield f"is moved by a joint that is no hinge but {joint.kind}"
+        yield f"is on a joint that is no hinge: {joint.kind}"
     if not joint.is_unlimited:
         yield f"turns by at most {math.degrees(joint.upper - joint.lower):.0f} degrees"
     if abs(joint.axis[2]) > UPRIGHT:
@@ -356,7 +356,7 @@ def _faults(link: Link, shape: Shape, joint: Joint | None, tree: Tree) -> Iterat
         yield f"is tilted by {angle:.3g} degrees against the axis on which it turns"
     if radius_about(shape, joint.place, joint.axis) is None:
         off = float(np.linalg.norm(np.cross(shape.pose.place - joint.place, joint.axis)))
-        yield f"has its middle {1e3 * off:.3g} mm beside the axis on which it turns"
+        yield f"has its centre {1e3 * off:.3g} mm off the axis on which it turns"
     if any(each.parent == link.name and not each.is_locked for each in tree.joints.values()):
         yield "carries another joint that moves"
     yield "turns with shapes that are not round about its axis"
