@@ -109,7 +109,7 @@ impl Contact {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenario::{Scenario, Surface};
+    use crate::scenario::{Surface, shared};
 
     #[test]
     fn a_force_is_along_the_normal_and_across_it() {
@@ -120,8 +120,7 @@ mod tests {
 
     #[test]
     fn a_contact_fits_a_robot_and_a_ground_that_have_its_part_its_facet_and_its_edge() {
-        let text = include_str!("../../../tests/scenarios/engineer_belt_step.json");
-        let robot = Scenario::from_json(text).expect("it is valid").robot;
+        let robot = shared("engineer_belt_step").robot;
         let model = Model::new(&robot).expect("it can be built");
         let points = [[-1.0, 0.0], [0.0, 0.0], [0.0, 0.1], [1.0, 0.1]];
         let lane = Profile::new("terrain", &points, Surface::sharp(0.9), true);

@@ -176,7 +176,7 @@ mod tests {
     use crate::contact::penetration::depth;
     use crate::draw::Draw;
     use crate::robot::{BodyKind, Model, Mount};
-    use crate::scenario::{Scenario, Surface};
+    use crate::scenario::{Surface, shared};
 
     /// The nearest contact: its distance [m], position and edge.
     fn nearest(contacts: &[Contact]) -> Option<(f64, Vector, i32)> {
@@ -190,9 +190,9 @@ mod tests {
     fn both_methods_find_the_same_nearest_place_of_a_robot_above_the_ground() {
         const PREDICTION: f64 = 0.03;
         let scenarios = [
-            include_str!("../../../tests/scenarios/engineer_gear3_step.json"),
-            include_str!("../../../tests/scenarios/engineer_force_step.json"),
-            include_str!("../../../tests/scenarios/engineer_belt_step.json"),
+            "engineer_gear3_step",
+            "engineer_force_step",
+            "engineer_belt_step",
         ];
         let points = [
             [-2.0, 0.0],
@@ -204,8 +204,8 @@ mod tests {
         ];
         let lane = Profile::new("terrain", &points, Surface::sharp(0.9), true).expect("a profile");
         let mut draw = Draw(7);
-        for text in scenarios {
-            let scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+        for name in scenarios {
+            let scenario = shared(name);
             let model = Model::new(&scenario.robot).expect("the robot can be built");
             let lanes = std::slice::from_ref(&lane);
             let own = OwnContact::new(&model.parts, lanes);

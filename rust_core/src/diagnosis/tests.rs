@@ -11,6 +11,7 @@ use crate::observe::{Bearing, DriveMean};
 use crate::robot::{BodyKind, Model, Mount, Part};
 use crate::scenario::{
     GearWheel, LineOfWheels, Scenario, Surface, Terrain, TorqueSharing, Track, TrackOutline, Wheel,
+    shared,
 };
 use crate::terrain::Ground;
 
@@ -41,8 +42,7 @@ impl Stage {
     }
 
     fn on(track: Track) -> Self {
-        let text = include_str!("../../../tests/scenarios/engineer_belt_step.json");
-        let mut scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+        let mut scenario = shared("engineer_belt_step");
         scenario.robot.track = track;
         scenario.robot.outline.discs = TrackOutline::two_discs(2.0 * HALF, [RADIUS, RADIUS]);
         let post = |x: f64| {
@@ -263,8 +263,7 @@ fn a_body_bears_on_ground_in_the_track_from_half_the_least_load_on() {
 #[test]
 fn the_moment_on_a_hinge_is_the_arms_weight_times_its_level_arm() {
     let mut stage = Stage::new();
-    let text = include_str!("../../../tests/scenarios/engineer_flippers_step.json");
-    let scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+    let scenario = shared("engineer_flippers_step");
     let model = Model::on(&scenario.robot, &stage.ground).expect("it can be built");
     stage.model = model.as_one_body(&model.running_at_start(0.0));
     let flippers = scenario.robot.flippers.expect("it has a pair");
@@ -283,8 +282,7 @@ fn the_moment_on_a_hinge_is_the_arms_weight_times_its_level_arm() {
 #[test]
 fn ground_under_the_sprocket_of_an_arm_does_not_turn_it() {
     let mut stage = Stage::new();
-    let text = include_str!("../../../tests/scenarios/engineer_flippers_step.json");
-    let scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+    let scenario = shared("engineer_flippers_step");
     stage.model = Model::on(&scenario.robot, &stage.ground).expect("it can be built");
     let pivot = stage.model.flippers[0].pivot;
     let pose = Pose::new(Vector::new(0.2, 0.1), 0.3);
@@ -452,8 +450,7 @@ fn ground_between_wheels_jams_from_the_least_depth_on() {
 /// The same posts dent the belt that the shared scenario has.
 #[test]
 fn ground_within_a_single_smooth_surface_is_not_inside_the_track() {
-    let text = include_str!("../../../tests/scenarios/engineer_belt_step.json");
-    let scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+    let scenario = shared("engineer_belt_step");
     let stage = Stage::on(scenario.robot.track);
     let found = stage.examine(&stage.stance([0.5, 0.5]));
     assert!(found.intrusion.is_none() && !found.jammed);

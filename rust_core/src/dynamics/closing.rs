@@ -96,17 +96,17 @@ mod tests {
     use crate::robot::Shape;
 
     const SCENARIOS: [&str; 3] = [
-        include_str!("../../../tests/scenarios/judge_gear3_step.json"),
-        include_str!("../../../tests/scenarios/engineer_grouser_belt_step.json"),
-        include_str!("../../../tests/scenarios/engineer_flippers_step.json"),
+        "judge_gear3_step",
+        "engineer_grouser_belt_step",
+        "engineer_flippers_step",
     ];
 
     /// Calls `check` with contacts anywhere at the parts of robots that whirl through the air: with how the gap changes,
     /// and with the change [m] after a time [s].
     fn for_each(check: impl Fn(Closing, &dyn Fn(f64) -> f64)) {
         let mut draw = Draw(7);
-        for text in SCENARIOS {
-            let (mut dynamics, state) = whirling(text);
+        for name in SCENARIOS {
+            let (mut dynamics, state) = whirling(name);
             let (layout, unknowns) = (dynamics.problem.layout, &mut dynamics.problem.unknowns);
             state.write_velocities(layout, unknowns);
             let (model, unknowns) = (&dynamics.model, &dynamics.problem.unknowns);
@@ -155,8 +155,8 @@ mod tests {
     fn no_point_strays_farther_than_its_bound() {
         const TIME: f64 = 1e-3;
         let mut draw = Draw(3);
-        for text in SCENARIOS {
-            let (mut dynamics, state) = whirling(text);
+        for name in SCENARIOS {
+            let (mut dynamics, state) = whirling(name);
             let (layout, unknowns) = (dynamics.problem.layout, &mut dynamics.problem.unknowns);
             state.write_velocities(layout, unknowns);
             let other = &mut dynamics.motion;

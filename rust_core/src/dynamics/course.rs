@@ -169,9 +169,9 @@ mod tests {
     }
 
     /// Checks the acceleration of a point of each part against the place where it is before and after.
-    fn check(text: &str) {
+    fn check(name: &str) {
         const TIME: f64 = 1e-4;
-        let (mut dynamics, state) = whirling(text);
+        let (mut dynamics, state) = whirling(name);
         let (layout, unknowns) = (dynamics.problem.layout, &mut dynamics.problem.unknowns);
         state.write_velocities(layout, unknowns);
         let (model, unknowns) = (&dynamics.model, &dynamics.problem.unknowns);
@@ -203,15 +203,12 @@ mod tests {
 
     #[test]
     fn the_points_of_gears_accelerate_with_chassis_and_axle() {
-        check(include_str!(
-            "../../../tests/scenarios/engineer_gear3_step.json"
-        ));
+        check("engineer_gear3_step");
     }
 
     #[test]
     fn grousers_accelerate_along_their_belt_and_round_its_ends() {
-        let text = include_str!("../../../tests/scenarios/engineer_grouser_belt_step.json");
-        let (dynamics, _) = whirling(text);
+        let (dynamics, _) = whirling("engineer_grouser_belt_step");
         assert!(
             dynamics
                 .model
@@ -219,14 +216,12 @@ mod tests {
                 .iter()
                 .any(|part| matches!(part.shape, Shape::Grouser(_)))
         );
-        check(text);
+        check("engineer_grouser_belt_step");
     }
 
     #[test]
     fn the_points_of_arms_accelerate_with_pivot_and_arm() {
-        check(include_str!(
-            "../../../tests/scenarios/engineer_flippers_step.json"
-        ));
+        check("engineer_flippers_step");
     }
 
     #[test]

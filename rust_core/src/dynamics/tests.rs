@@ -5,13 +5,12 @@ use approx::assert_relative_eq;
 use super::*;
 use crate::draw::{Draw, cases};
 use crate::geometry::{Vector, direction};
-use crate::scenario::{Friction, Scenario, Track};
+use crate::scenario::{Friction, Scenario, Track, shared};
 use crate::solver::Row;
 use crate::terrain::GroundFriction;
 
 pub(super) fn engineer() -> Scenario {
-    let text = include_str!("../../../tests/scenarios/engineer_belt_step.json");
-    Scenario::from_json(text).expect("the shared scenario is valid")
+    shared("engineer_belt_step")
 }
 
 pub(super) fn setup(change: impl Fn(&mut Scenario)) -> (Dynamics, State) {
@@ -33,8 +32,8 @@ pub(super) fn setup(change: impl Fn(&mut Scenario)) -> (Dynamics, State) {
 }
 
 /// A robot that whirls through the air with all that moves on it.
-pub(super) fn whirling(text: &str) -> (Dynamics, State) {
-    let scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+pub(super) fn whirling(name: &str) -> (Dynamics, State) {
+    let scenario = shared(name);
     let model = Model::new(&scenario.robot).expect("the robot can be built");
     let mut state = State::at_rest(&model, Vector::new(0.3, 1.0), 0.2, 0.0);
     state.velocity = Vector::new(0.4, -0.3);
@@ -160,9 +159,8 @@ fn a_step_ends_when_a_robot_that_slides_comes_to_rest() {
 
 #[test]
 fn the_traction_of_a_tooth_is_what_slows_its_drive() {
-    let text = include_str!("../../../tests/scenarios/engineer_gear3_step.json");
     let (mut dynamics, mut state) = setup(|s| {
-        *s = Scenario::from_json(text).expect("the shared scenario is valid");
+        *s = shared("engineer_gear3_step");
         s.solver.accuracy = None;
         s.robot.drivetrain.max_torque = 0.0;
         s.robot.drivetrain.rotor_inertia = 0.0;

@@ -180,7 +180,7 @@ impl MotorRule {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenario::Scenario;
+    use crate::scenario::shared;
 
     impl Line {
         fn at(self, speed: f64) -> f64 {
@@ -206,10 +206,7 @@ mod tests {
     /// Without torque there is no share of it at any speed.
     #[test]
     fn a_curve_of_torques_is_one_of_shares_of_the_largest() {
-        let text = include_str!("../../../tests/scenarios/engineer_belt_step.json");
-        let mut robot = Scenario::from_json(text)
-            .expect("the shared scenario is valid")
-            .robot;
+        let mut robot = shared("engineer_belt_step").robot;
         let mut curve = |most: f64, torques: Option<[[f64; 2]; 3]>| {
             robot.drivetrain.max_torque = most;
             robot.drivetrain.no_load_speed = torques.is_none().then_some(0.75);

@@ -155,7 +155,7 @@ fn closed(corners: &[Vector]) -> impl Iterator<Item = [Vector; 2]> {
 mod tests {
     use super::*;
     use crate::robot::BodyKind;
-    use crate::scenario::{Surface, Terrain};
+    use crate::scenario::{Surface, Terrain, shared};
 
     /// Its discs are listed so that those at the ends of the lower run are no neighbours. Over a spike in the middle it stands as
     /// high as that, less how deep the run lies.
@@ -187,8 +187,7 @@ mod tests {
 
     /// The Engineer on a belt, turned, on a ground from one x to another [m] with an edge at 0.
     fn start(angle: f64, [low, high]: [f64; 2]) -> (Scenario, Result<Vector, ScenarioError>) {
-        let text = include_str!("../../../tests/scenarios/engineer_belt_step.json");
-        let mut scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+        let mut scenario = shared("engineer_belt_step");
         scenario.start.angle = angle;
         scenario.start.approach = 0.1;
         scenario.terrain = Terrain::Points {

@@ -9,8 +9,8 @@ use super::outline::Body;
 use super::{BodyKind, ChainOfShoes, Model, MotorRule, Mount, Part, Shape, start_position};
 use crate::geometry::{Pose, Rotation, Vector};
 use crate::scenario::{
-    ClosedSurface, ClosedTrack, Ends, HybridWheels, LineOfWheels, Pi, Robot, Scenario, Surface,
-    Terrain, Track, Wheel,
+    ClosedSurface, ClosedTrack, Ends, HybridWheels, LineOfWheels, Pi, Robot, Surface, Terrain,
+    Track, Wheel, shared,
 };
 use crate::terrain::Ground;
 
@@ -68,28 +68,26 @@ fn whole(model: &Model) -> Sum {
     sum
 }
 
-fn scenario(text: &str) -> Scenario {
-    Scenario::from_json(text).expect("the shared scenario is valid")
-}
-
 /// The Engineer on every track model.
 fn on_all_tracks() -> Vec<Robot> {
-    let texts = [
-        include_str!("../../../tests/scenarios/engineer_belt_step.json"),
-        include_str!("../../../tests/scenarios/engineer_chain_step.json"),
-        include_str!("../../../tests/scenarios/engineer_force_step.json"),
-        include_str!("../../../tests/scenarios/engineer_gear3_step.json"),
-        include_str!("../../../tests/scenarios/engineer_grouser_belt_step.json"),
-        include_str!("../../../tests/scenarios/engineer_hybrid_step.json"),
-        include_str!("../../../tests/scenarios/engineer_sprocket_step.json"),
+    let names = [
+        "engineer_belt_step",
+        "engineer_chain_step",
+        "engineer_force_step",
+        "engineer_gear3_step",
+        "engineer_grouser_belt_step",
+        "engineer_hybrid_step",
+        "engineer_sprocket_step",
     ];
-    texts.map(|text| scenario(text).robot).to_vec()
+    names.map(|name| shared(name).robot).to_vec()
 }
 
 /// The same with arms at both ends, at an angle [rad].
 fn on_arms(angle: f64) -> Vec<Robot> {
-    let text = include_str!("../../../tests/scenarios/engineer_flippers_step.json");
-    let mut flippers = scenario(text).robot.flippers.expect("it has some");
+    let mut flippers = shared("engineer_flippers_step")
+        .robot
+        .flippers
+        .expect("it has some");
     (flippers.ends, flippers.angle) = (Ends::Both, angle);
     let mut robots = on_all_tracks();
     for robot in &mut robots {
@@ -101,8 +99,8 @@ fn on_arms(angle: f64) -> Vec<Robot> {
 
 /// With each track on its own ground.
 fn on_two_lanes(robot: &Robot) -> Model {
-    let text = include_str!("../../../tests/scenarios/engineer_belt_step.json");
-    let mut ground = Ground::new(&scenario(text).terrain, robot.gauge).expect("it is ground");
+    let mut ground =
+        Ground::new(&shared("engineer_belt_step").terrain, robot.gauge).expect("it is ground");
     let lane = ground.lanes.remove(0);
     let ground = Ground::apart([lane.clone(), lane], None, ground.goal).expect("they overlap");
     Model::on(robot, &ground).expect("it is valid")
@@ -353,9 +351,7 @@ fn motors_are_seen_from_the_belt() {
 /// The lower run of its belt joins wheels that are not neighbours in the list, and covers a higher one.
 #[test]
 fn a_closed_track_starts_on_what_is_highest_below_its_hull() {
-    let mut scenario = scenario(include_str!(
-        "../../../tests/scenarios/engineer_belt_step.json"
-    ));
+    let mut scenario = shared("engineer_belt_step");
     scenario.robot.belly = None;
     scenario.terrain = Terrain::Points {
         points: vec![

@@ -105,13 +105,12 @@ fn advance_until(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenario::{ForceSupport, ForceTrack, Scenario, Track};
+    use crate::scenario::{ForceSupport, ForceTrack, Track, shared};
 
     /// The Engineer without motor force on skids of some friction, 1 m in front of a step, its centre of mass that high [m] over
     /// its axles.
     fn skids(skid_friction: f64, height: f64) -> ValidScenario {
-        let text = include_str!("../../../tests/scenarios/engineer_belt_step.json");
-        let mut scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+        let mut scenario = shared("engineer_belt_step");
         scenario.robot.track = Track::Force(ForceTrack {
             support: ForceSupport::Skids,
             skid_friction,

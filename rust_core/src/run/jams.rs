@@ -150,12 +150,11 @@ mod tests {
     use super::*;
     use crate::geometry::Vector;
     use crate::run::trials::tests::wheels;
-    use crate::scenario::{ForceSupport, ForceTrack, Scenario, Surface, Terrain, Track};
+    use crate::scenario::{ForceSupport, ForceTrack, Surface, Terrain, Track, shared};
 
     /// The Engineer without motor force on skids of some friction, on ground that rises by a tenth.
     fn skids(friction: f64, rises: bool) -> (Simulation, Jam) {
-        let text = include_str!("../../../tests/scenarios/engineer_belt_step.json");
-        let mut scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+        let mut scenario = shared("engineer_belt_step");
         scenario.robot.track = Track::Force(ForceTrack {
             support: ForceSupport::Skids,
             skid_friction: friction,

@@ -220,16 +220,16 @@ mod tests {
     use super::*;
     use crate::dynamics::FlipperCommand;
     use crate::run::ValidScenario;
-    use crate::scenario::{End, Scenario, Track};
+    use crate::scenario::{End, Track, shared};
 
     /// The Engineer on a belt, or on a chain of 40 shoes of 60 g.
     fn simulation(on_chain: bool) -> Simulation {
-        let text = if on_chain {
-            include_str!("../../../tests/scenarios/engineer_chain_step.json")
+        let name = if on_chain {
+            "engineer_chain_step"
         } else {
-            include_str!("../../../tests/scenarios/engineer_belt_step.json")
+            "engineer_belt_step"
         };
-        let mut scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+        let mut scenario = shared(name);
         if let Track::Segmental(chain) = &mut scenario.robot.track {
             chain.shoe_count = Some(40);
         }
@@ -285,8 +285,7 @@ mod tests {
     /// Its arms turn by 1 rad/s.
     #[test]
     fn tips_of_arms_are_as_fast_as_they_turn_and_as_far_as_the_robot_reaches() {
-        let text = include_str!("../../../tests/scenarios/engineer_flippers_step.json");
-        let mut scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+        let mut scenario = shared("engineer_flippers_step");
         (scenario.drive.gait, scenario.drive.speed) = (None, 0.0);
         let mut simulation = Simulation::new(&ValidScenario::new(&scenario).expect("it is valid"));
         let up = FlipperCommand::Rate(1.0);

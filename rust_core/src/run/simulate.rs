@@ -177,11 +177,10 @@ fn standing(robot: &Simulation, backwards: bool) -> Option<TipOver> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenario::{Scenario, Surface, Terrain};
+    use crate::scenario::{Surface, Terrain, shared};
 
     fn before_a_step(height: f64) -> ValidScenario {
-        let text = include_str!("../../../tests/scenarios/engineer_belt_step.json");
-        let mut scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+        let mut scenario = shared("engineer_belt_step");
         scenario.terrain = Terrain::Step {
             height,
             surface: Surface::sharp(0.9),

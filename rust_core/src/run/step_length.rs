@@ -166,6 +166,7 @@ mod tests {
     use super::*;
     use crate::geometry::Vector;
     use crate::robot::{Model, Shape};
+    use crate::scenario::shared;
 
     const ACCURACY: f64 = 1e-6;
     const RULE: StepRule = StepRule::Accuracy {
@@ -186,8 +187,7 @@ mod tests {
     /// Wheels of 30 mm at 1.39 m/s turn by 46.3 rad/s, and by 0.7 rad in 15.1 ms.
     #[test]
     fn nothing_may_turn_by_more_than_0_7_rad_in_a_step() {
-        let text = include_str!("../../../tests/scenarios/engineer_flippers_step.json");
-        let mut scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+        let mut scenario = shared("engineer_flippers_step");
         let model = Model::new(&scenario.robot).expect("it can be built");
         let parts = [0.06, 0.03, 0.04].map(|radius| Part {
             shape: Shape::Disc {

@@ -4,7 +4,7 @@
 use serde_json::{Map, Value};
 
 use super::{Record, Run, ValidScenario, simulate};
-use crate::scenario::Scenario;
+use crate::scenario::{Scenario, shared};
 use crate::units::with_units;
 
 /// Exponents of length, time and mass in the unit of a field.
@@ -123,13 +123,8 @@ fn bits(run: &Run, scale: [f64; 3]) -> Vec<u64> {
 }
 
 /// A shared scenario, shorter, with rotors of this inertia [kg m^2].
-fn shared(name: &str, rotor_inertia: f64) -> Scenario {
-    let path = format!(
-        "{}/../tests/scenarios/{name}.json",
-        env!("CARGO_MANIFEST_DIR")
-    );
-    let text = std::fs::read_to_string(path).expect("it is there");
-    let mut scenario = Scenario::from_json(&text).expect("the shared scenario is valid");
+fn shorter(name: &str, rotor_inertia: f64) -> Scenario {
+    let mut scenario = shared(name);
     scenario.duration = scenario.duration.min(2.5);
     scenario.robot.drivetrain.rotor_inertia = rotor_inertia;
     scenario
@@ -147,7 +142,7 @@ fn copies_on_other_scales_end_with_the_same_bits() {
         ("judge_gear3_step", 0.0),
         ("judge_gear3_bar", 0.04),
     ] {
-        let original = shared(name, rotor_inertia);
+        let original = shorter(name, rotor_inertia);
         let expected = run(&original, [1.0; 3]);
         for scale in SCALES {
             let found = run(&copy(&original, scale), scale);
@@ -164,7 +159,7 @@ fn copies_on_other_scales_end_with_the_same_bits() {
 /// So the test above can fail.
 #[test]
 fn without_the_units_of_the_method_a_copy_moves_otherwise() {
-    let (original, scale) = (shared("judge_gear3_step", 0.0), SCALES[0]);
+    let (original, scale) = (shorter("judge_gear3_step", 0.0), SCALES[0]);
     let copy = copy(&original, scale);
     let [same, other] = [scale, [1.0; 3]].map(|units| run(&copy, units));
     assert_ne!(bits(&same, scale), bits(&other, scale));

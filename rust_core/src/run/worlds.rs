@@ -279,13 +279,12 @@ impl World {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenario::{Ends, Scenario, Terrain};
+    use crate::scenario::{Ends, Scenario, Terrain, shared};
 
     /// Both stand 0.2 m before a step of 8 cm, each with as many distances as are asked for.
     #[test]
     fn heights_are_those_of_the_ground_so_far_from_each_robot() {
-        let text = include_str!("../../../tests/scenarios/engineer_belt_step.json");
-        let scenario = ValidScenario::from_json(text).expect("the shared scenario is valid");
+        let scenario = ValidScenario::new(&shared("engineer_belt_step")).expect("it is valid");
         let worlds = Worlds::new(vec![scenario.clone(); 2], &Cancel::default());
         let worlds = worlds.expect("there is room");
         let Terrain::Step { height, .. } = scenario.scenario().terrain else {
@@ -305,8 +304,7 @@ mod tests {
 
     #[test]
     fn angles_of_arms_are_those_of_the_front_and_of_the_rear() {
-        let text = include_str!("../../../tests/scenarios/engineer_flippers_step.json");
-        let mut scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+        let mut scenario = shared("engineer_flippers_step");
         scenario.robot.moment_of_inertia = 1.0;
         scenario.drive.gait = None;
         let angles = |ends: Option<Ends>, scenario: &mut Scenario| {
@@ -328,8 +326,7 @@ mod tests {
 
     #[test]
     fn if_one_command_is_refused_no_world_has_another() {
-        let text = include_str!("../../../tests/scenarios/engineer_belt_step.json");
-        let scenario = ValidScenario::from_json(text).expect("the shared scenario is valid");
+        let scenario = ValidScenario::new(&shared("engineer_belt_step")).expect("it is valid");
         let worlds = Worlds::new(vec![scenario; 2], &Cancel::default());
         let mut worlds = worlds.expect("there is room");
         let push = |force: f64| ByHand {
@@ -364,8 +361,7 @@ mod tests {
 
     #[test]
     fn one_that_cannot_go_on_stands_still_until_it_is_reset_and_the_others_go_on() {
-        let text = include_str!("../../../tests/scenarios/engineer_belt_step.json");
-        let scenario = ValidScenario::from_json(text).expect("the shared scenario is valid");
+        let scenario = ValidScenario::new(&shared("engineer_belt_step")).expect("it is valid");
         let worlds = Worlds::new(vec![scenario; 2], &Cancel::default());
         let mut worlds = worlds.expect("there is room");
         let failed = worlds.worlds[1].get_mut().expect("nobody panicked");

@@ -9,6 +9,8 @@ mod objects;
 mod outline;
 mod robot;
 mod settings;
+#[cfg(test)]
+mod shared;
 mod terrain;
 mod track;
 mod warnings;
@@ -27,6 +29,8 @@ pub use fields::ScenarioError;
 pub use outline::TrackOutline;
 pub use robot::{End, Ends, Flippers, Robot};
 pub use settings::{ContactMethod, Engine, SeizureCriteria, Solver, Start};
+#[cfg(test)]
+pub(crate) use shared::{shared, shared_text};
 pub(crate) use terrain::scaled_friction;
 pub use terrain::{FieldPattern, Friction, MAX_POINTS, Stepfield, Surface, Terrain};
 pub use track::{

@@ -350,37 +350,18 @@ object! {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenario::Scenario;
+    use crate::scenario::shared;
 
     #[test]
     fn a_track_has_grousers_if_its_surface_has_and_none_once_they_are_covered() {
-        let of = |text: &str| {
-            let scenario = Scenario::from_json(text);
-            scenario.expect("the shared scenario is valid").robot.track
-        };
-        for (text, has_grousers) in [
-            (
-                include_str!("../../../tests/scenarios/engineer_belt_step.json"),
-                false,
-            ),
-            (
-                include_str!("../../../tests/scenarios/engineer_grouser_belt_step.json"),
-                true,
-            ),
-            (
-                include_str!("../../../tests/scenarios/engineer_chain_step.json"),
-                true,
-            ),
-            (
-                include_str!("../../../tests/scenarios/engineer_gear3_step.json"),
-                true,
-            ),
-            (
-                include_str!("../../../tests/scenarios/engineer_force_step.json"),
-                false,
-            ),
+        for (name, has_grousers) in [
+            ("engineer_belt_step", false),
+            ("engineer_grouser_belt_step", true),
+            ("engineer_chain_step", true),
+            ("engineer_gear3_step", true),
+            ("engineer_force_step", false),
         ] {
-            let open = of(text);
+            let open = shared(name).robot.track;
             assert_eq!(open.has_grousers(), has_grousers, "{open:?}");
             let closed = |surface| {
                 let of = Box::new(open.clone());

@@ -17,8 +17,8 @@ use crate::draw::{Draw, cases};
 use crate::geometry::{Pose, Rotation, Vector};
 use crate::robot::{Model, Mount};
 use crate::scenario::{
-    CircumferentialWheels, GearWheel, HybridWheels, LineOfWheels, Scenario, Surface, Terrain,
-    Track, Wheel,
+    CircumferentialWheels, GearWheel, HybridWheels, LineOfWheels, Surface, Terrain, Track, Wheel,
+    shared,
 };
 use crate::terrain::Ground;
 
@@ -34,10 +34,7 @@ fn wheels() -> [Wheel; 2] {
 }
 
 fn model(track: Track) -> Model {
-    let text = include_str!("../../../../tests/scenarios/engineer_belt_step.json");
-    let mut robot = Scenario::from_json(text)
-        .expect("the shared scenario is valid")
-        .robot;
+    let mut robot = shared("engineer_belt_step").robot;
     robot.track = track;
     Model::new(&robot).expect("it can be built")
 }

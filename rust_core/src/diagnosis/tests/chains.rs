@@ -1,12 +1,12 @@
 //! Motion of shoes of a chain where they bear, and when they pinch the ground.
 
 use super::*;
+use crate::scenario::shared;
 
 /// The same stage with the Engineer on a chain of shoes.
 fn on_a_chain() -> Stage {
     let mut stage = Stage::new();
-    let text = include_str!("../../../../tests/scenarios/engineer_chain_step.json");
-    stage.scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+    stage.scenario = shared("engineer_chain_step");
     stage.model = Model::on(&stage.scenario.robot, &stage.ground).expect("it can be built");
     stage
 }

@@ -6,7 +6,7 @@ use super::rest::Bearing;
 use super::*;
 use crate::geometry::{Rotation, direction};
 use crate::robot::Model;
-use crate::scenario::Scenario;
+use crate::scenario::shared;
 use crate::solver::Damper;
 
 /// [m] How far ahead rests are searched for.
@@ -14,8 +14,7 @@ const REACH: f64 = 1e-3;
 
 /// The chain round sprocket, idler, road wheels and return rollers.
 fn on_wheels() -> Chain {
-    let text = include_str!("../../../../tests/scenarios/engineer_sprocket_step.json");
-    let scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+    let scenario = shared("engineer_sprocket_step");
     let model = Model::new(&scenario.robot).expect("the robot can be built");
     Chain::new(model.chains[0].clone())
 }

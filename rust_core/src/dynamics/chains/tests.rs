@@ -7,7 +7,7 @@ use crate::contact::Contact;
 use crate::dynamics::Shoe;
 use crate::geometry::{Rotation, Twist, cross, left_of};
 use crate::robot::{Bushing, Model, Mount};
-use crate::scenario::{Friction, Scenario};
+use crate::scenario::{Friction, shared};
 use crate::terrain::GroundFriction;
 
 /// Momentum [kg m/s], angular momentum about the origin [kg m^2/s] and energy [J] of the shoes and bushings.
@@ -30,8 +30,7 @@ fn sums(dynamics: &Dynamics, state: &State) -> (Vector, f64, f64) {
 /// The Engineer without gravity and motors, and its chain 3 m away: still in the shape of the track, but turning as
 /// a whole and flying off.
 fn whirling(bushing: Bushing) -> (Dynamics, State) {
-    let text = include_str!("../../../../tests/scenarios/engineer_chain_step.json");
-    let mut scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+    let mut scenario = shared("engineer_chain_step");
     scenario.robot.drivetrain.max_torque = 0.0;
     let model = Model::new(&scenario.robot).expect("the robot can be built");
     let mut state = State::at_rest(&model, Vector::ZERO, 0.0, 0.0);

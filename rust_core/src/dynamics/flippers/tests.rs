@@ -6,13 +6,12 @@ use super::*;
 use crate::dynamics::tests::STEP;
 use crate::robot::Flipper;
 use crate::robot::Model;
-use crate::scenario::{Ends, Flippers, Friction, Scenario};
+use crate::scenario::{Ends, Flippers, Friction, Scenario, shared};
 use crate::terrain::GroundFriction;
 
 /// The Engineer with arms at both ends.
 fn scenario(torque_limit: f64) -> Scenario {
-    let text = include_str!("../../../../tests/scenarios/engineer_belt_step.json");
-    let mut scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+    let mut scenario = shared("engineer_belt_step");
     scenario.robot.flippers = Some(Flippers {
         length: 0.34,
         root_radius: 0.064,

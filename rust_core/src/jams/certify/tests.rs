@@ -19,7 +19,7 @@ use crate::limits::Cancel;
 use crate::robot::Model;
 use crate::scenario::{
     ClosedSurface, ClosedTrack, LineOfWheels, Scenario, ScenarioError, Surface, Terrain, Track,
-    Wheel,
+    Wheel, shared,
 };
 use crate::terrain::Ground;
 
@@ -31,8 +31,7 @@ const MOST_ANGLE: f64 = 1.3;
 
 /// The Engineer on four wheels in a row before a step.
 pub(super) fn scenario(height: f64, friction: f64) -> Scenario {
-    let text = include_str!("../../../../tests/scenarios/engineer_belt_step.json");
-    let mut scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+    let mut scenario = shared("engineer_belt_step");
     scenario.robot.track = Track::Line(LineOfWheels {
         count: 4,
         wheel_radius: None,

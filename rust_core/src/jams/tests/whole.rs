@@ -6,14 +6,13 @@ use crate::jams::{Jam, JamRange, jam_ranges, jams};
 use crate::robot::Model;
 use crate::scenario::{
     BeltTrack, ClosedSurface, ClosedTrack, LineOfWheels, Scenario, Surface as Roughness, Terrain,
-    Track, Wheel,
+    Track, Wheel, shared,
 };
 use crate::terrain::Ground;
 
 /// The Engineer on round wheels, without a belly, before a step of 80 mm.
 fn on_wheels(count: u32, friction: f64) -> Scenario {
-    let text = include_str!("../../../../tests/scenarios/engineer_belt_step.json");
-    let mut scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+    let mut scenario = shared("engineer_belt_step");
     scenario.robot.belly = None;
     scenario.robot.track = Track::Line(LineOfWheels {
         count,
@@ -189,23 +188,11 @@ fn a_robot_reaches_from_its_centre_of_mass_to_its_farthest_point() {
 /// Where they can jam depends on how far they have turned, or they are pushed by something else.
 #[test]
 fn tracks_whose_shape_turns_with_their_drives_are_refused_by_their_names() {
-    let texts = [
-        (
-            include_str!("../../../../tests/scenarios/engineer_gear3_step.json"),
-            "gear wheels",
-        ),
-        (
-            include_str!("../../../../tests/scenarios/engineer_grouser_belt_step.json"),
-            "a belt with grousers",
-        ),
-        (
-            include_str!("../../../../tests/scenarios/engineer_chain_step.json"),
-            "a chain of shoes",
-        ),
-        (
-            include_str!("../../../../tests/scenarios/engineer_force_step.json"),
-            "force",
-        ),
+    let names = [
+        ("engineer_gear3_step", "gear wheels"),
+        ("engineer_grouser_belt_step", "a belt with grousers"),
+        ("engineer_chain_step", "a chain of shoes"),
+        ("engineer_force_step", "force"),
     ];
     let refused = |scenario: &Scenario| {
         let (model, _) = built(scenario);
@@ -213,12 +200,12 @@ fn tracks_whose_shape_turns_with_their_drives_are_refused_by_their_names() {
         assert_eq!(error.path, "robot.track");
         error.value
     };
-    for (text, name) in texts {
-        let scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+    for (shown, name) in names {
+        let scenario = shared(shown);
         assert_eq!(refused(&scenario), name);
     }
     // Gear wheels in a closed track whose surface has their grousers, or none.
-    let mut scenario = Scenario::from_json(texts[0].0).expect("the shared scenario is valid");
+    let mut scenario = shared(names[0].0);
     let of = Box::new(scenario.robot.track);
     let closed = |surface| {
         Track::Closed(ClosedTrack {

@@ -2,7 +2,7 @@
 #![allow(clippy::float_cmp)] // numbers here are exact in binary
 
 use super::*;
-use crate::scenario::Scenario;
+use crate::scenario::shared;
 use crate::terrain::Ground;
 
 /// Signals of steps of 0.25 s: place [m], and force [N] and place of one contact.
@@ -177,8 +177,7 @@ fn loads_of_an_interval_are_means_of_each_contact_that_bears() {
 fn sums_with_one_thing_spoilt_do_not_fit() {
     type Spoil = fn(&mut WindowSums);
 
-    let text = include_str!("../../../../tests/scenarios/engineer_belt_step.json");
-    let scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+    let scenario = shared("engineer_belt_step");
     let ground = Ground::new(&scenario.terrain, scenario.robot.gauge).expect("a ground");
     let model = Model::on(&scenario.robot, &ground).expect("it can be built");
     let steps = [([0.0, 0.0], 1.0, [4.0, 0.0]), ([0.0, 0.0], 3.0, [8.0, 2.0])];

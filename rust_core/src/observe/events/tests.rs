@@ -4,13 +4,12 @@ use super::*;
 use crate::contact::TrackEnvelope;
 use crate::geometry::{Pose, Vector};
 use crate::robot::{Model, Mount};
-use crate::scenario::Scenario;
+use crate::scenario::shared;
 use crate::terrain::Ground;
 
 /// An intrusion between bodies 1 and 2 with these edges, the deepest first.
 fn intrusion(edges: &[i32], depth: f64) -> Intrusion {
-    let text = include_str!("../../../../tests/scenarios/engineer_belt_step.json");
-    let scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+    let scenario = shared("engineer_belt_step");
     let ground = Ground::new(&scenario.terrain, scenario.robot.gauge).expect("a ground");
     let model = Model::new(&scenario.robot).expect("it can be built");
     let track = (0, Mount::Chassis);
@@ -160,8 +159,7 @@ fn the_kinds_have_the_names_of_the_tables() {
 
 /// The lanes of a step up.
 fn lanes() -> Vec<Profile> {
-    let text = include_str!("../../../../tests/scenarios/engineer_belt_step.json");
-    let scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+    let scenario = shared("engineer_belt_step");
     let ground = Ground::new(&scenario.terrain, scenario.robot.gauge);
     ground.expect("a ground").lanes
 }

@@ -11,7 +11,7 @@ use approx::assert_relative_eq;
 use super::*;
 use crate::contact::Contact;
 use crate::geometry::Vector;
-use crate::scenario::{Surface, Terrain, TrackOutline};
+use crate::scenario::{Surface, Terrain, TrackOutline, shared};
 use crate::solver::Grip;
 
 /// [s] Time between two readings, a tenth of that between two checks.
@@ -25,8 +25,7 @@ const END: f64 = 4.0;
 
 /// The Engineer on a belt, with end axles 0.5 m apart, on level ground.
 fn scenario() -> Scenario {
-    let text = include_str!("../../../../tests/scenarios/engineer_belt_step.json");
-    let mut scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+    let mut scenario = shared("engineer_belt_step");
     scenario.robot.outline.discs = TrackOutline::two_discs(2.0 * HALF, [RADIUS, RADIUS]);
     scenario.terrain = ground(&[[-END, 0.0], [END, 0.0]]);
     scenario

@@ -1,6 +1,7 @@
 //! Arms computed by hand, tracks on separate lanes, and tips of grousers.
 
 use super::*;
+use crate::scenario::shared;
 
 #[test]
 fn each_closed_track_is_over_the_lane_of_its_own_drive() {
@@ -60,9 +61,7 @@ fn tips_of_grousers_are_faster_than_their_belt_by_the_ratio_of_their_radii() {
         fastest.push(expected);
     }
     assert!(fastest.contains(&0.0) && fastest.iter().any(|speed| *speed > 1.1));
-    let gears = scenario(include_str!(
-        "../../../../tests/scenarios/engineer_gear3_step.json"
-    ));
+    let gears = shared("engineer_gear3_step");
     // Its surface is where its tips are.
     assert_relative_eq!(model(&gears.robot).tip_speed(), 1.0);
 }

@@ -320,20 +320,12 @@ impl RunningGear {
 mod tests {
     use super::*;
     use crate::robot::Model;
-    use crate::scenario::{Scenario, Track};
-
-    fn robot(text: &str) -> Robot {
-        Scenario::from_json(text)
-            .expect("the shared scenario is valid")
-            .robot
-    }
+    use crate::scenario::{Track, shared};
 
     /// With plates 4 mm thick and grousers 12 mm high and 6 mm thick.
     #[test]
     fn a_shoe_is_a_plate_with_a_grouser_in_its_middle() {
-        let robot = robot(include_str!(
-            "../../../../tests/scenarios/engineer_chain_step.json"
-        ));
+        let robot = shared("engineer_chain_step").robot;
         let of = |shape| -> Vec<Vec<[f64; 2]>> {
             let pieces = shapes(&robot, shape, 0.05, 0.004);
             let corners =
@@ -383,9 +375,7 @@ mod tests {
     /// together have twice what one has.
     #[test]
     fn a_tensioner_pulls_with_a_share_of_the_weight_and_is_damped_for_the_track() {
-        let mut robot = robot(include_str!(
-            "../../../../tests/scenarios/engineer_chain_step.json"
-        ));
+        let mut robot = shared("engineer_chain_step").robot;
         let Track::Segmental(mut track) = robot.track.clone() else {
             panic!("it is a chain")
         };
@@ -416,9 +406,7 @@ mod tests {
     /// 20 of them divide the 0.365 m between the axles into 21.
     #[test]
     fn road_wheels_fill_nearly_all_of_their_run() {
-        let mut robot = robot(include_str!(
-            "../../../../tests/scenarios/engineer_sprocket_step.json"
-        ));
+        let mut robot = shared("engineer_sprocket_step").robot;
         let Track::Segmental(track) = &mut robot.track else {
             panic!("it is a chain")
         };
@@ -440,9 +428,7 @@ mod tests {
     #[test]
     #[allow(clippy::float_cmp)] // a limit of 0 is exact
     fn only_the_shoes_of_a_chain_on_wheels_rub_on_the_ground() {
-        let robot = robot(include_str!(
-            "../../../../tests/scenarios/engineer_sprocket_step.json"
-        ));
+        let robot = shared("engineer_sprocket_step").robot;
         let model = Model::new(&robot).expect("it is valid");
         let mut wheels = 0;
         for part in model.track_parts() {

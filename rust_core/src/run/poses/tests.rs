@@ -9,19 +9,19 @@ use crate::run::record::Recorder;
 use crate::run::{Record, Simulation, ValidScenario};
 use crate::scenario::{
     End, Ends, Friction, Gait, GearWheel, Hold, LineOfWheels, Scenario, Terrain, TorqueSharing,
-    Track, Wheel,
+    Track, Wheel, shared,
 };
 
 /// Robots with all kinds of bodies, in front of a step, or of a step under one track only.
 fn scenarios() -> Vec<(String, Scenario)> {
-    let texts = [
-        include_str!("../../../../tests/scenarios/engineer_belt_step.json"),
-        include_str!("../../../../tests/scenarios/engineer_grouser_belt_step.json"),
-        include_str!("../../../../tests/scenarios/engineer_chain_step.json"),
-        include_str!("../../../../tests/scenarios/engineer_sprocket_step.json"),
-        include_str!("../../../../tests/scenarios/engineer_flippers_step.json"),
+    let names = [
+        "engineer_belt_step",
+        "engineer_grouser_belt_step",
+        "engineer_chain_step",
+        "engineer_sprocket_step",
+        "engineer_flippers_step",
     ];
-    let mut found: Vec<Scenario> = texts.map(read).into();
+    let mut found: Vec<Scenario> = names.map(shared).into();
     let mut gears = found[0].clone();
     gears.robot.track = Track::Line(LineOfWheels {
         count: 4,
@@ -66,10 +66,6 @@ fn scenarios() -> Vec<(String, Scenario)> {
         .enumerate()
         .map(named)
         .collect()
-}
-
-fn read(text: &str) -> Scenario {
-    Scenario::from_json(text).expect("the shared scenario is valid")
 }
 
 /// A simulation after a number of steps, and the trace of that instant.
@@ -142,9 +138,7 @@ fn the_centre_of_mass_of_a_sample_is_that_of_the_whole_robot() {
 
 #[test]
 fn a_waypoint_of_a_belt_is_where_a_grouser_would_be() {
-    let scenario = read(include_str!(
-        "../../../../tests/scenarios/engineer_grouser_belt_step.json"
-    ));
+    let scenario = shared("engineer_grouser_belt_step");
     let model = Model::new(&scenario.robot).expect("the robot is valid");
     let belt = model.parts.iter().find_map(Part::circuit);
     let belt = belt.expect("it has a belt");
@@ -165,9 +159,7 @@ fn a_waypoint_of_a_belt_is_where_a_grouser_would_be() {
 
 #[test]
 fn tips_of_grousers_lie_on_the_envelope_of_the_tips() {
-    let scenario = read(include_str!(
-        "../../../../tests/scenarios/engineer_grouser_belt_step.json"
-    ));
+    let scenario = shared("engineer_grouser_belt_step");
     let model = Model::new(&scenario.robot).expect("the robot is valid");
     let tips: Vec<_> = model
         .discs_of_track(0, Mount::Chassis)
@@ -227,9 +219,7 @@ fn recorded(mut simulation: Simulation) -> Trace {
 /// Three of them, each with its own motor.
 #[test]
 fn wheels_of_each_sample_have_run_as_far_as_their_drives() {
-    let mut scenario = read(include_str!(
-        "../../../../tests/scenarios/engineer_belt_step.json"
-    ));
+    let mut scenario = shared("engineer_belt_step");
     scenario.robot.track = Track::Line(LineOfWheels {
         count: 3,
         wheel_radius: None,
@@ -251,9 +241,7 @@ fn wheels_of_each_sample_have_run_as_far_as_their_drives() {
 /// Arms at both ends turn while it is recorded.
 #[test]
 fn arms_of_each_sample_are_at_their_angles_of_that_sample() {
-    let mut scenario = read(include_str!(
-        "../../../../tests/scenarios/engineer_flippers_step.json"
-    ));
+    let mut scenario = shared("engineer_flippers_step");
     scenario.robot.flippers.as_mut().expect("it has some").ends = Ends::Both;
     scenario.robot.moment_of_inertia = 1.0;
     let checked = ValidScenario::new(&scenario).expect("it is valid");

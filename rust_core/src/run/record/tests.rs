@@ -1,12 +1,11 @@
 //! Samples of a run, and the memory reserved for them.
 
 use super::*;
-use crate::scenario::{Terrain, Track};
+use crate::scenario::{Terrain, Track, shared};
 
 /// The Engineer with a belt on level ground.
 fn level() -> Scenario {
-    let text = include_str!("../../../../tests/scenarios/engineer_belt_step.json");
-    let mut scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+    let mut scenario = shared("engineer_belt_step");
     if let Terrain::Step { surface, .. } = scenario.terrain {
         let friction = surface.friction;
         let length = 5.0;
@@ -142,8 +141,7 @@ fn a_record_may_begin_and_end_between_two_samples() {
 /// 0.8.
 #[test]
 fn the_torque_that_holds_arms_is_recorded_as_a_mean() {
-    let text = include_str!("../../../../tests/scenarios/engineer_flippers_step.json");
-    let mut scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+    let mut scenario = shared("engineer_flippers_step");
     (scenario.drive.gait, scenario.drive.speed) = (None, 0.0);
     let checked = ValidScenario::new(&scenario).expect("it is valid");
     let mut simulation = Simulation::new(&checked);
@@ -225,8 +223,7 @@ fn a_sample_needs_room_for_its_numbers_and_for_contacts_of_half_of_the_parts() {
     let belt = level();
     let bytes = |robot| bytes_of_sample(&Model::new(robot).expect("it is valid"));
     assert_eq!(bytes(&belt.robot), 8 * (14 + 3) + 2 * 8 * 15);
-    let text = include_str!("../../../../tests/scenarios/engineer_chain_step.json");
-    let mut chain = Scenario::from_json(text).expect("the shared scenario is valid");
+    let mut chain = shared("engineer_chain_step");
     if let Track::Segmental(track) = &mut chain.robot.track {
         track.shoe_count = Some(40);
     }

@@ -4,13 +4,13 @@
 use super::*;
 use crate::run::{Record, escape_force, simulate};
 use crate::scenario::{
-    ForceSupport, ForceTrack, LineOfWheels, Scenario, Surface, Terrain, TorqueSharing, Track, Wheel,
+    ForceSupport, ForceTrack, LineOfWheels, Scenario, Surface, Terrain, TorqueSharing, Track,
+    Wheel, shared,
 };
 
 /// The Engineer on a belt, 0.1 m before a step.
 pub(in crate::run) fn engineer() -> Scenario {
-    let text = include_str!("../../../../tests/scenarios/engineer_belt_step.json");
-    Scenario::from_json(text).expect("the shared scenario is valid")
+    shared("engineer_belt_step")
 }
 
 /// Round wheels on a line before a step [m].

@@ -7,6 +7,7 @@ use crate::jams::certify::found::{Region, SearchEffort};
 use crate::jams::certify::regions::Pair;
 use crate::jams::layout::Layout;
 use crate::jams::places::{Facing, Place};
+use crate::scenario::shared;
 
 fn ends(place: &Place) -> [Vector; 2] {
     match place.shape {
@@ -74,8 +75,7 @@ fn poses_are_sought_over_all_of_the_ground() {
 /// distance.
 #[test]
 fn arms_count_in_the_moment_of_inertia_where_they_are_held() {
-    let text = include_str!("../../../../../tests/scenarios/engineer_flippers_step.json");
-    let mut scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+    let mut scenario = shared("engineer_flippers_step");
     scenario.robot.track = super::scenario(0.07, 0.5).robot.track;
     let (model, ground) = built(&scenario);
     let found = Family::new(&[(&model, &ground)], &[], true, MOST_ANGLE).expect("it has wheels");
@@ -101,8 +101,7 @@ fn arms_count_in_the_moment_of_inertia_where_they_are_held() {
 
 #[test]
 fn the_track_of_an_arm_is_where_the_arm_is_held() {
-    let text = include_str!("../../../../../tests/scenarios/engineer_flippers_step.json");
-    let mut scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+    let mut scenario = shared("engineer_flippers_step");
     let wheels = super::scenario(0.07, 0.5).robot.track;
     let arms = scenario.robot.flippers.as_mut().expect("it has some");
     arms.track = Some(wheels.clone());

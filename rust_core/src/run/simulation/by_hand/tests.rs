@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::run::ValidScenario;
+use crate::scenario::shared;
 
 const NOTHING: ByHand = ByHand {
     speed: None,
@@ -11,8 +12,7 @@ const NOTHING: ByHand = ByHand {
 
 /// With arms at the front.
 fn engineer() -> Simulation {
-    let text = include_str!("../../../../../tests/scenarios/engineer_flippers_step.json");
-    Simulation::new(&ValidScenario::from_json(text).expect("the shared scenario is valid"))
+    Simulation::new(&ValidScenario::new(&shared("engineer_flippers_step")).expect("it is valid"))
 }
 
 fn speed(speed: f64) -> ByHand {

@@ -9,12 +9,11 @@ use crate::diagnosis::Change;
 use crate::draw::Draw;
 use crate::observe::Outcome;
 use crate::run::{ValidScenario, trials};
-use crate::scenario::{Scenario, Surface, Terrain};
+use crate::scenario::{Surface, Terrain, shared};
 
 /// A belt in front of a post whose top is at a height [m], moved onto it by `way` from its start.
 fn on_a_post(height: f64, way: Displacement) -> Simulation {
-    let text = include_str!("../../../../../tests/scenarios/engineer_belt_step.json");
-    let mut scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+    let mut scenario = shared("engineer_belt_step");
     scenario.robot.belly = None;
     scenario.terrain = Terrain::Barrier {
         height,
@@ -69,8 +68,7 @@ fn the_nearest_point_beyond_walls_is_on_those_that_hold_it_back() {
 
 #[test]
 fn arms_are_moved_with_their_robot() {
-    let text = include_str!("../../../../../tests/scenarios/engineer_flippers_step.json");
-    let scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+    let scenario = shared("engineer_flippers_step");
     let mut robot = Simulation::new(&ValidScenario::new(&scenario).expect("it is valid"));
     let (before, half) = (robot.reading(), robot.half_length());
     robot.displace([0.1, 0.2, 0.3 * half]);
@@ -140,8 +138,7 @@ fn no_pose_of_a_grid_is_nearer_and_clear() {
 
 #[test]
 fn a_robot_that_is_clear_stays_where_it_is_and_rests() {
-    let text = include_str!("../../../../../tests/scenarios/engineer_belt_step.json");
-    let scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+    let scenario = shared("engineer_belt_step");
     let mut moving =
         Simulation::new(&ValidScenario::new(&scenario).expect("the scenario is valid"));
     moving.advance(0.3).expect("the state stays finite");

@@ -5,15 +5,14 @@ use super::*;
 use crate::contact::Contact;
 use crate::dynamics::FlipperCommand;
 use crate::geometry::Vector;
-use crate::scenario::Scenario;
 use crate::scenario::{
     BeltTrack, End, Ends, Flippers, LineOfWheels, Surface, Terrain, Track, Wheel,
 };
+use crate::scenario::{Scenario, shared};
 
 /// The Engineer with front arms, on three wheels in front of a post, after some time.
 fn on_wheels() -> Simulation {
-    let text = include_str!("../../../../../tests/scenarios/engineer_belt_step.json");
-    let mut scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+    let mut scenario = shared("engineer_belt_step");
     scenario.robot.track = Track::Line(LineOfWheels {
         count: 3,
         wheel_radius: None,

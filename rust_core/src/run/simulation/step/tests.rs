@@ -3,7 +3,7 @@
 use super::*;
 use crate::robot::Running;
 use crate::run::ValidScenario;
-use crate::scenario::{Scenario, Track, Wheel};
+use crate::scenario::{Track, Wheel, shared};
 
 /// [m] Depth of the tips of gear wheels in the ground at their lowest.
 const DIP: f64 = 5e-6;
@@ -35,8 +35,7 @@ impl Simulation {
 
 /// A robot on gear wheels, at rest.
 fn on_gears(phase: f64) -> Simulation {
-    let text = include_str!("../../../../../tests/scenarios/judge_gear3_step.json");
-    let mut scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+    let mut scenario = shared("judge_gear3_step");
     scenario.start.track_phase = phase;
     Simulation::new(&ValidScenario::new(&scenario).expect("it is valid"))
 }
@@ -194,9 +193,9 @@ fn tips_that_come_and_go_within_a_step_strike() {
 }
 
 const SCENARIOS: [&str; 3] = [
-    include_str!("../../../../../tests/scenarios/judge_gear3_step.json"),
-    include_str!("../../../../../tests/scenarios/engineer_grouser_belt_step.json"),
-    include_str!("../../../../../tests/scenarios/engineer_flippers_step.json"),
+    "judge_gear3_step",
+    "engineer_grouser_belt_step",
+    "engineer_flippers_step",
 ];
 
 /// A robot that falls at `speed` [m/s], with a contact found there `half` a step [s] later, each up to 8 ms long, at a
@@ -292,9 +291,9 @@ fn steps_of_a_given_length_leave_nothing_out() {
 
 #[test]
 fn contacts_that_a_step_leaves_out_stay_open_in_it() {
-    for text in SCENARIOS {
-        let scenario = Scenario::from_json(text).expect("the shared scenario is valid");
-        let mut simulation = Simulation::new(&ValidScenario::new(&scenario).expect("it is valid"));
+    for name in SCENARIOS {
+        let mut simulation =
+            Simulation::new(&ValidScenario::new(&shared(name)).expect("it is valid"));
         let mut left_out = 0;
         while simulation.time() < 2.0 {
             simulation.step().expect("it is finite");

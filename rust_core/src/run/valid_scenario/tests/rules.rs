@@ -1,5 +1,6 @@
 //! Every rule of a scenario refuses a value that breaks it, by path and rule, and accepts the last valid one.
 
+use crate::scenario::shared_text;
 use serde_json::{Value, json};
 
 use super::super::{ValidScenario, place_of};
@@ -187,28 +188,16 @@ const TEXTS: [[&str; 3]; 9] = [
     ],
 ];
 
-fn shared(name: &str) -> Value {
-    let text = match name {
-        "chain" => include_str!("../../../../../tests/scenarios/engineer_chain_step.json"),
-        "flippers" => include_str!("../../../../../tests/scenarios/engineer_flippers_step.json"),
-        "force" => include_str!("../../../../../tests/scenarios/engineer_force_step.json"),
-        "gear3" => include_str!("../../../../../tests/scenarios/engineer_gear3_step.json"),
-        "grouser_belt" => {
-            include_str!("../../../../../tests/scenarios/engineer_grouser_belt_step.json")
-        }
-        "hybrid" => include_str!("../../../../../tests/scenarios/engineer_hybrid_step.json"),
-        "sprocket" => include_str!("../../../../../tests/scenarios/engineer_sprocket_step.json"),
-        _ => BELT,
-    };
-    serde_json::from_str(text).expect("it is JSON")
+/// The Engineer in front of a step.
+fn engineer(on: &str) -> Value {
+    let text = shared_text(&format!("engineer_{on}_step"));
+    serde_json::from_str(&text).expect("it is JSON")
 }
 
-const BELT: &str = include_str!("../../../../../tests/scenarios/engineer_belt_step.json");
-
-/// A shared scene, or one made of it.
+/// Such a scene, or one made of it.
 pub(super) fn scene(name: &str) -> Value {
-    let shared = |name, field: &str, value| {
-        let mut scene = shared(name);
+    let with = |name, field: &str, value| {
+        let mut scene = engineer(name);
         put(&mut scene, field, value);
         scene
     };
@@ -216,37 +205,37 @@ pub(super) fn scene(name: &str) -> Value {
         "triangle" => {
             let mut outline = json!({"grouser_height": 0.012, "grouser_pitch": 0.048, "grouser_thickness": 0.006});
             outline["discs"] = json!([[-0.18, 0, 0.064], [0.18, 0, 0.064], [0, 0.1, 0.064]]);
-            shared("belt", "/robot/outline", outline)
+            with("belt", "/robot/outline", outline)
         }
         "circumferential" => {
             let track = json!({"kind": name, "count": 20, "wheel_radius": null, "wheel": {"kind": "round"}});
-            shared("belt", "/robot/track", track)
+            with("belt", "/robot/track", track)
         }
         "points" => {
             let ground = json!({"kind": name, "points": [[-9, 0], [9, 0]], "goal": 8, "edge_radius": 0, "friction": 0.9});
-            shared("belt", "/terrain", ground)
+            with("belt", "/terrain", ground)
         }
         "lanes" => {
             let flat = |length| json!({"kind": "flat", "length": length, "friction": 0.9});
             let ground =
                 json!({"kind": name, "left": flat(1.0), "right": flat(1.5), "middle": null});
-            shared("belt", "/terrain", ground)
+            with("belt", "/terrain", ground)
         }
         "rapier" => {
-            let mut scene = shared("gear3", "/solver/engine", json!(name));
+            let mut scene = with("gear3", "/solver/engine", json!(name));
             put(&mut scene, "/solver/accuracy", Value::Null);
             put(&mut scene, "/solver/time_step", json!(0.000_125));
             scene
         }
-        _ => shared(name, "/schema", json!(2)),
+        _ => engineer(name),
     }
 }
 
 /// A value of the table: JSON, or a name for a long one.
 pub(super) fn value(text: &str) -> Value {
     match text {
-        "CHAIN" => shared("chain")["robot"]["track"].take(),
-        "ARMS" => shared("flippers")["robot"]["flippers"].take(),
+        "CHAIN" => engineer("chain")["robot"]["track"].take(),
+        "ARMS" => engineer("flippers")["robot"]["flippers"].take(),
         _ => serde_json::from_str(text).expect("it is JSON"),
     }
 }
@@ -285,8 +274,9 @@ fn every_rule_refuses_what_breaks_it_and_nothing_before() {
 #[test]
 fn a_text_that_is_no_scenario_is_refused_by_its_place() {
     for [part, other, error] in TEXTS {
-        assert!(BELT.contains(part), "{part}");
-        let found = refusal(&BELT.replacen(part, other, 1));
+        let belt = shared_text("engineer_belt_step");
+        assert!(belt.contains(part), "{part}");
+        let found = refusal(&belt.replacen(part, other, 1));
         assert!(found.contains(error), "{other}\n{found}");
     }
 }
