@@ -12,11 +12,10 @@ impl Family {
     /// Whether no ground is deeper inside a track than a limit, anywhere in a cell.
     pub(super) fn is_as_on_belt(&self, cell: &Cell, depth: f64) -> bool {
         let turns = Turns::of(cell);
-        let reach = self.reach + cell.position().half.length();
         self.places.iter().all(|spot| {
             self.tracks
                 .iter()
-                .all(|track| spot.is_outside(track, cell, &turns, reach, depth))
+                .all(|track| spot.is_outside(track, cell, &turns, self.reach, depth))
         })
     }
 
@@ -46,7 +45,7 @@ impl Family {
 
 impl Spot {
     /// Whether it is nowhere deeper inside a track than a limit in any pose without overlap: off all wheels along its
-    /// normal, or beyond a straight run or a disc.
+    /// normal, or beyond a straight run or a disc. The robot reaches no farther than `reach` [m] from its position.
     fn is_outside(
         &self,
         track: &Track,
