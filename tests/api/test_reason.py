@@ -87,6 +87,21 @@ def test_every_run_that_does_not_clear_has_a_reason(tipped: c2d.Run) -> None:
     assert branch.reason.startswith("tipped over backwards after ")
 
 
+def test_a_robot_that_shall_stand_does_not_drive_on() -> None:
+    step = c2d.terrains.step(0.05)
+    parked = c2d.simulate(ROBOT, step, drive=c2d.Drive(speed=0.0), duration=0.1, record="summary")
+    assert parked.reason == "timed out after 0.10 s, with a commanded speed of 0"
+    halted = c2d.Drive(speed=0.3, schedule=((1.2, 0.0), (9.0, 0.3)))
+    for record in ("full", "summary"):
+        run = c2d.simulate(ROBOT, step, drive=halted, duration=1.5, record=record)
+        assert run.reason == "timed out after 1.50 s, with a commanded speed of 0"
+
+
+def test_progress_before_the_first_stop_window_is_over_is_not_known() -> None:
+    pushing = c2d.simulate(ROBOT, c2d.terrains.step(0.3), duration=0.5)
+    assert pushing.reason == "timed out after 0.50 s, before its first stop window was over"
+
+
 def test_a_title_says_when_the_goal_was_reached_as_the_metric_does() -> None:
     run = c2d.simulate(ROBOT, c2d.terrains.step(0.05))
     assert run.metrics["time_to_clear"] < run.metrics["time"]

@@ -119,8 +119,7 @@ class Record:
                 direction = "backwards" if metrics["final_angle"] > 0.0 else "forwards"
                 text = str(tip_over or f"tipped over {direction} {after}")
             case Outcome.TIMED_OUT:
-                percent = 100 * metrics["progress"]
-                text = f"timed out {after}, still driving at {percent:.0f} % of the commanded speed"
+                text = f"timed out {after}, {self._driving}"
             case Outcome.LEFT_TERRAIN:
                 text = (
                     f"left the terrain {after}, at x = {metrics['final_x']:.3f} m: an end axle was"
@@ -132,6 +131,18 @@ class Record:
                     f" reached {metrics['max_track_tension']:.0f} N"
                 )
         return text
+
+    @property
+    def _driving(self) -> str:
+        """How a robot drove that neither cleared nor stopped."""
+        drive, time, progress = self.scenario.drive, self.metrics["time"], self.metrics["progress"]
+        passed = [speed for start, speed in drive.schedule or () if start <= time]
+        commanded = self.commanded_speed if self._trace else [drive.speed, *passed]
+        if commanded[-1] == 0.0:
+            return "with a commanded speed of 0"
+        if progress == 1.0:
+            return "before its first stop window was over"
+        return f"still driving at {100 * progress:.0f} % of the commanded speed"
 
     @property
     def mechanism(self) -> Mechanism | None:
