@@ -59,8 +59,8 @@ class ShownRun(Record):
         ax : Axes, optional
             Where to draw; None makes a figure.
         time : array_like, shape (k,), optional
-            [s] Times at which to draw the robot, later ones at the end; None draws it about every
-            robot length.
+            [s] Times at which to draw the robot, within the run; None draws it about every robot
+            length.
         trials : bool
             Whether to draw the end of each trial that freed the robot, if its stop is drawn.
 
@@ -72,7 +72,7 @@ class ShownRun(Record):
         Raises
         ------
         ScenarioError
-            If `time` is not a finite number, or `trials` not True or False.
+            If `time` is not a number within the run, or `trials` not True or False.
         ImportError
             If matplotlib is missing; the message names the extra to install.
         AttributeError
