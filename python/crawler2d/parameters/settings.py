@@ -8,6 +8,7 @@ from collections.abc import Callable
 from dataclasses import KW_ONLY, dataclass
 from typing import Any, ClassVar, Literal
 
+from crawler2d.common.arrays import whole_number
 from crawler2d.common.keywords import takes_keywords
 from crawler2d.parameters.fields import Parameters, to_dict
 
@@ -316,12 +317,19 @@ class ScenarioBase(Parameters):
         Parameters
         ----------
         indent : int, optional
-            Spaces per level; None writes one line.
+            Spaces per level, from 0 to 16; None writes one line.
 
         Returns
         -------
         str
             The text. It is not validated: see `validate`.
+
+        Raises
+        ------
+        ScenarioError
+            If `indent` is anything else.
         """
+        if indent is not None:
+            indent = whole_number(indent, "indent", 0, 16)
         separators = (",", ":") if indent is None else (",", ": ")
         return json.dumps(to_dict(self), allow_nan=False, indent=indent, separators=separators)
