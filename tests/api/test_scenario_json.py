@@ -33,7 +33,7 @@ def test_a_scenario_survives_json(name: str) -> None:
 @pytest.mark.parametrize("indent", ["x", "\t", True, -1, 2.5, 10**9])
 def test_a_wrong_indent_is_refused_before_it_makes_text_that_is_no_json(indent: Any) -> None:
     with pytest.raises(c2d.ScenarioError, match=r"^indent must be a whole number from 0 to 16, g"):
-        VARIANTS["belt"].to_json(indent=indent)
+        VARIANTS["belt-lanes"].to_json(indent=indent)
 
 
 @pytest.mark.parametrize("name", VARIANTS)
