@@ -52,7 +52,7 @@ def cases(text: str) -> dict[str, ElementTree.Element]:
         assert len(set(names)) == len(names)
         for case in suite:
             assert set(case.attrib) == {"name", "classname"}
-            assert {part.tag for part in case} <= {"failure", "skipped", "system-out"}
+            assert {part.tag for part in case} <= {"failure", "error", "skipped", "system-out"}
             assert len({part.tag for part in case}) == len(case)
             for part in case:
                 assert set(part.attrib) <= {"type", "message"}

@@ -177,7 +177,7 @@ def junit_of(checks: Sequence[Check]) -> str:
 
     An obstacle fails if the robot seizes on it, a rule if it is broken with an error; other
     findings are in the ``system-out`` of the case. With a baseline only new issues fail, and known
-    ones are skipped.
+    ones are skipped. A file that cannot be read is an error, not a failure.
 
     Parameters
     ----------
@@ -222,7 +222,8 @@ def _case(check: Check, name: str, issues: Iterable[Issue], out: str) -> XML:
     if failing:
         texts = "\n".join(_with_line(each, check.path.as_posix()) for each in failing)
         message = {"type": failing[0].rule, "message": failing[0].text}
-        case.append(_element("failure", texts, **message))
+        tag = "error" if check.found is None else "failure"
+        case.append(_element(tag, texts, **message))
     elif known:
         case.append(_element("skipped", message=f"in the baseline: {known[0].text}"))
     case.append(_element("system-out", out))
@@ -240,7 +241,7 @@ def _set_counts(element: XML, *names: str) -> None:
     counts = {
         "tests": len(cases),
         "failures": len(list(element.iter("failure"))),
-        "errors": 0,  # an unreadable file is also a failure
+        "errors": len(list(element.iter("error"))),
         "skipped": len(list(element.iter("skipped"))),
     }
     for name in names:
