@@ -230,6 +230,26 @@ def test_a_run_survives_pickling(run: c2d.Run) -> None:
             twin.time[0] = 1.0
 
 
+def test_results_that_are_values_equal_their_copies_and_no_others() -> None:
+    robot = ROBOT.with_track(c2d.LineOfWheels(4))
+    scenario = Scenario(robot, c2d.terrains.step(0.1))
+    run = c2d.simulate(scenario)
+    sim, batch = c2d.Simulation(scenario), c2d.Simulations([scenario])
+    over = {"terrain.height": (0.05, 0.06)}
+    certificate = c2d.studies.certify(scenario, over, most_cells=10, keep_cells=True)
+    before = (run.diagnosis, run.events, run.bodies, sim.state(), batch.state(), certificate)
+    for value in before:
+        for twin in (copy.copy(value), copy.deepcopy(value), pickle.loads(pickle.dumps(value))):
+            assert (twin, hash(twin)) == (value, hash(value))
+    run.what_if("torque x 10")
+    sim.advance(0.1)
+    batch.advance(0.1)
+    other = c2d.studies.certify(scenario, over, most_cells=10, depth=2e-3)
+    after = (run.diagnosis, run.contacts, run.edges, sim.state(), batch.state(), other)
+    for one, another in zip(before, after, strict=True):
+        assert one != another
+
+
 def test_the_repr_is_one_short_line(run: c2d.Run) -> None:
     assert (
         repr(run)

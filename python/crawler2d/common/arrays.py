@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import fields
 from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 __all__ = [
+    "ByValue",
     "Metrics",
     "Table",
     "freeze_array",
@@ -294,6 +296,34 @@ def _summary(value: Any, array: np.ndarray[Any, Any]) -> object:
     return value
 
 
+class ByValue:
+    """A dataclass of which two are equal if all fields are, also arrays and NaN in them."""
+
+    __slots__ = ()
+
+    def __eq__(self, other: object) -> bool:
+        """Compare all fields."""
+        if type(other) is not type(self):
+            return NotImplemented
+        names = [field.name for field in fields(self)]  # type: ignore[arg-type] # of a dataclass
+        return all(_is_same(getattr(self, name), getattr(other, name)) for name in names)
+
+    def __hash__(self) -> int:
+        """Return a number that equal ones share, as arrays have none."""
+        return hash(type(self))
+
+
+def _is_same(one: Any, other: Any) -> bool:
+    """Compare values of which some may be, or hold, arrays."""
+    if isinstance(one, np.ndarray) and isinstance(other, np.ndarray):
+        if object in (one.dtype, other.dtype):
+            return one.shape == other.shape and all(map(_is_same, one.flat, other.flat))
+        return np.array_equal(one, other, equal_nan=one.dtype.kind == other.dtype.kind == "f")
+    if isinstance(one, dict) and isinstance(other, dict):
+        return one.keys() == other.keys() and all(_is_same(one[key], other[key]) for key in one)
+    return bool(one == other) or bool(one != one and other != other)  # noqa: PLR0124 - NaN
+
+
 # Rows of a table shown by a notebook.
 _SHOWN = 10
 
@@ -325,10 +355,6 @@ class Table(Mapping[str, "NDArray[Any]"]):
 
     __slots__ = ("_frozen", "_source")
 
-    # Comparing columns gives arrays, so a table equals only itself.
-    __eq__ = object.__eq__
-    __hash__ = object.__hash__
-
     def __init__(self, columns: Mapping[str, Any] | Callable[[], Mapping[str, Any]]) -> None:
         self._source = columns if callable(columns) else lambda: columns
         self._frozen = None if callable(columns) else _freeze_columns(columns)
@@ -357,6 +383,14 @@ class Table(Mapping[str, "NDArray[Any]"]):
     def __bool__(self) -> bool:
         """Whether there is any row."""
         return len(self) > 0
+
+    def __eq__(self, other: object) -> bool:
+        """Compare names and values of all columns, NaN with NaN."""
+        return _is_same(self._columns, other._columns) if isinstance(other, Table) else False
+
+    def __hash__(self) -> int:
+        """Return a number that equal tables share, as arrays have none."""
+        return hash(frozenset(self))
 
     def __reduce__(self) -> tuple[type[Table], tuple[dict[str, Any]]]:
         """Pickle the columns; they stay read-only in the copy."""

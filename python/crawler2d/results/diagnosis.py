@@ -9,7 +9,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from crawler2d.common.arrays import Table
+from crawler2d.common.arrays import ByValue, Table
 from crawler2d.common.bodies import BodyKind
 from crawler2d.results.findings import Intrusion, Mechanism, TrialResult
 from crawler2d.results.outcome import Outcome
@@ -71,7 +71,7 @@ _GRIPS = {
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Diagnosis:
+class Diagnosis(ByValue):
     """Why a robot stopped despite its command; see `Run.diagnosis`.
 
     ``str(diagnosis)`` summarises it in a sentence. Forces, speeds and pose are means over the last

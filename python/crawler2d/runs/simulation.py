@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from crawler2d import _core
-from crawler2d.common.arrays import Table, freeze_array, real_number
+from crawler2d.common.arrays import ByValue, Table, freeze_array, real_number
 from crawler2d.common.bodies import POSE_COLUMNS
 from crawler2d.common.keywords import TakesKeywords, takes_keywords
 from crawler2d.errors import ScenarioError, ignore_warnings
@@ -47,7 +47,7 @@ _COMMANDS = ("drive.speed", *_ANGLES.values(), "flipper_rate", "rear_flipper_rat
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class State:
+class State(ByValue):
     """The state at one instant, named like the arrays of a `Run`.
 
     Attributes

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import numpy as np
 
 from crawler2d import _core
-from crawler2d.common.arrays import real_number, whole_number
+from crawler2d.common.arrays import ByValue, real_number, whole_number
 from crawler2d.common.keywords import TakesKeywords, takes_keywords
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.scenario import Scenario, check_scenario
@@ -24,7 +24,7 @@ __all__ = ["Simulations", "States"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class States:
+class States(ByValue):
     """The states of N simulations at an instant.
 
     Attributes

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from crawler2d import _core
-from crawler2d.common.arrays import read_bool, read_range, real_number, whole_number
+from crawler2d.common.arrays import ByValue, read_bool, read_range, real_number, whole_number
 from crawler2d.common.keywords import takes_keywords
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.fields import read_number_path
@@ -35,7 +35,7 @@ _EXCLUSIONS = "apart", "overlap", "belt", "unbalanced", "tips"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Certificate:
+class Certificate(ByValue):
     """Ranges of fields in which a robot cannot jam; ``str(certificate)`` summarises it.
 
     Attributes
