@@ -385,6 +385,13 @@ def test_wheels_rounded_to_four_decimals_stand_in_a_line(
     assert any("evenly spaced within 0.033 mm" in note for note in reading.notes) is line
 
 
+def test_numbers_of_numpy_are_options_as_others_are() -> None:
+    path = c2d.samples.path(c2d.samples.names()[0])
+    numbers: Any = {"scale": np.array(1.0), "tolerance": np.float64(0.001), "trusted": np.False_}
+    usual = c2d.read_robot(path, scale=1.0, tolerance=0.001)
+    assert c2d.read_robot(path, **numbers).how == usual.how
+
+
 def test_a_reading_survives_a_pickle() -> None:
     again = pickle.loads(pickle.dumps(SDF))
     assert again.robot == SDF.robot

@@ -3,6 +3,7 @@
 import importlib
 import warnings
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -105,6 +106,31 @@ def test_a_single_run_or_scenario_is_no_list_of_them() -> None:
         c2d.rate(c2d.simulate(scenario))  # type: ignore[arg-type]
     with pytest.raises(c2d.ScenarioError, match="runs must be several"):
         c2d.table(c2d.simulate(scenario))  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("given", [np.array(2), np.array("x"), np.array(None), np.ma.masked])
+def test_an_array_without_dimensions_is_no_list(given: Any, tmp_path: Path) -> None:
+    run = c2d.simulate(ROBOT, c2d.terrains.flat(), duration=0.0)
+    cases: list[tuple[str, Callable[[], Any]]] = [
+        ("scenarios", lambda: c2d.simulate_many(given)),
+        ("scenarios", lambda: c2d.Simulations(given)),
+        ("table", lambda: c2d.rate(given)),
+        ("runs", lambda: c2d.table(given)),
+        ("axes", lambda: run.plot_history(given)),
+        ("tracks", lambda: c2d.read_robot(tmp_path, tracks=given)),
+    ]
+    for name, call in cases:
+        with pytest.raises(c2d.ScenarioError) as caught:
+            call()
+        assert caught.value.path == name
+
+
+def test_repeats_of_a_study_of_measures_are_a_number() -> None:
+    base = c2d.Scenario(ROBOT, c2d.terrains.flat(), duration=0.1)
+    none: Any = None
+    for study in (c2d.studies.ride, c2d.studies.odometry, c2d.studies.max_speed):
+        with pytest.raises(c2d.ScenarioError, match=r"^repeats must be a whole number from 1"):
+            study(base, repeats=none, progress=False)
 
 
 def test_fields_that_differ_in_their_seed_alone_get_a_warning_where_runs_draw_it() -> None:

@@ -88,6 +88,8 @@ def test_several_dimensions_can_be_counted_over() -> None:
     assert rate(TABLE, dim=["repeat", "repeat"]).identical(rate(TABLE))
     alone = rate(TABLE, dim=[])
     assert alone["count"].equals(TABLE["outcome"].isin([str(o) for o in c2d.Outcome]).astype(int))
+    pose = dict.fromkeys(("final_x", "final_y", "final_angle"), xr.zeros_like(alone["count"]))
+    assert rate(TABLE.assign(pose), dim=[])["distinct"].equals(alone["count"])
 
 
 def test_runs_that_share_a_draw_are_one_cluster_of_an_interval() -> None:

@@ -6,7 +6,7 @@ import contextlib
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import fields
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn, TypeGuard
 
 import numpy as np
 
@@ -24,6 +24,7 @@ __all__ = [
     "Metrics",
     "Table",
     "freeze_array",
+    "is_iterable",
     "read_bool",
     "read_instants",
     "read_range",
@@ -216,6 +217,11 @@ def read_bool(value: object, path: str) -> bool:
     if not isinstance(value, (bool, np.bool_)):
         raise ScenarioError(path, value, "must be True or False")
     return bool(value)
+
+
+def is_iterable(value: object) -> TypeGuard[Iterable[Any]]:
+    """Whether a value holds several; an array without dimensions only looks as if it did."""
+    return isinstance(value, Iterable) and getattr(value, "ndim", 1) != 0
 
 
 def read_rows(value: Any, path: str, *, rows: bool, columns: int | None) -> Any:

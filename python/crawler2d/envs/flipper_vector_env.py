@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import gymnasium
@@ -11,7 +11,7 @@ from gymnasium.utils import EzPickle, seeding
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
-from crawler2d.common.arrays import whole_number
+from crawler2d.common.arrays import is_iterable, whole_number
 from crawler2d.envs.episodes import Episodes, Step
 from crawler2d.envs.flipper_env import (
     TakesMadeKeywords,
@@ -163,7 +163,7 @@ class FlipperVectorEnv(TakesMadeKeywords, VectorEnv, EzPickle):
         seeds: list[int | None] = [None] * self.num_envs
         if isinstance(seed, int):
             seeds = [seed + k for k in range(self.num_envs)]
-        elif isinstance(seed, Iterable):
+        elif is_iterable(seed):
             seeds = list(seed)
             if len(seeds) != self.num_envs:
                 raise ScenarioError("seed", len(seeds), f"must be one or {self.num_envs}")

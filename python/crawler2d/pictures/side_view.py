@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from crawler2d.common.arrays import read_instants
+from crawler2d.common.arrays import is_iterable, read_instants
 from crawler2d.common.extras import extra
 from crawler2d.drawings.canvas import check_axes, set_title
 from crawler2d.drawings.palette import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, SKY, look_of
@@ -156,7 +156,7 @@ def plot_history(run: Record, axes: Sequence[Axes] | None) -> tuple[Axes, Axes, 
     if axes is None:
         pyplot = extra("matplotlib.pyplot", "plot")
         _, axes = pyplot.subplots(3, sharex=True, figsize=(8.0, 5.6), layout="constrained")
-    if not isinstance(axes, (tuple, list, np.ndarray)) or len(axes) != 3:
+    if not is_iterable(axes) or len(axes := tuple(axes)) != 3:
         raise ScenarioError("axes", axes, "must be three Axes")
     angle, speed, force = (check_axes(ax, f"axes[{row}]") for row, ax in enumerate(axes))
     angle.plot(time, np.degrees(run.chassis_angle), "-", color=BLUE)

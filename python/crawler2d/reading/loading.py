@@ -10,7 +10,7 @@ from typing import Any, get_args
 
 import numpy as np
 
-from crawler2d.common.arrays import real_number
+from crawler2d.common.arrays import read_bool, real_number
 from crawler2d.errors import ScenarioError
 from crawler2d.model_tree import Link, Tree
 from crawler2d.reading.engines import ENGINES
@@ -113,8 +113,7 @@ class ReadOptions:
             if not (value is None or isinstance(value, str)) or value not in allowed:
                 rule = f"must be one of {', '.join(str(each) for each in allowed)}"
                 raise ScenarioError(name, value, rule)
-        if not isinstance(self.trusted, bool):
-            raise ScenarioError("trusted", self.trusted, "must be True or False")
+        object.__setattr__(self, "trusted", read_bool(self.trusted, "trusted"))
         if not (self.model is None or isinstance(self.model, str)):
             raise ScenarioError("model", self.model, "must be the name of a model")
         _check_pairs(self.packages, "packages", "folders by their names", (str, os.PathLike))
@@ -129,6 +128,7 @@ class ReadOptions:
                 number = real_number(value, path)
                 if not least <= number <= most:
                     raise ScenarioError(path, number, f"must be between {least:g} and {most:g}")
+                object.__setattr__(self, path, number)
 
     @property
     def given(self) -> dict[str, Any]:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal
 
-from crawler2d.common.arrays import Table, real_number
+from crawler2d.common.arrays import Table, is_iterable, real_number
 from crawler2d.common.keywords import takes_keywords
 from crawler2d.drawings.svg import table
 from crawler2d.errors import ScenarioError, ScenarioWarning, warn
@@ -240,7 +240,7 @@ def read_robot(
     """
     if not isinstance(path, (str, os.PathLike)):
         raise ScenarioError("path", path, "must be a path")
-    if isinstance(tracks, str) or not isinstance(tracks, Collection):
+    if isinstance(tracks, str) or not isinstance(tracks, Collection) or not is_iterable(tracks):
         raise ScenarioError("tracks", tracks, "must be a collection of names of links")
     options = ReadOptions(
         engine=engine,

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 from typing import Any, Literal
 
 from crawler2d import _core
+from crawler2d.common.arrays import is_iterable
 from crawler2d.common.keywords import read_choice, refuse_unknown, takes_keywords
 from crawler2d.errors import RunUnfinished, ScenarioError, own_error, raise_first
 from crawler2d.parameters.fields import field_hints, known_paths
@@ -164,7 +165,7 @@ def simulate_many(
     read_choice(on_error, "on_error", ("raise", "record"))
     kept = (*check_recording(sample_interval, record), list(trial_names(trials)))
     count = thread_count(threads)
-    if not isinstance(scenarios, Iterable):
+    if not is_iterable(scenarios):
         raise ScenarioError("scenarios", scenarios, "must be several: give them in a list")
     batch = list(scenarios)
     checked = _validate(batch)

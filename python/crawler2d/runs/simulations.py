@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 
 from crawler2d import _core
-from crawler2d.common.arrays import ByValue, real_number, whole_number
+from crawler2d.common.arrays import ByValue, is_iterable, real_number, whole_number
 from crawler2d.common.keywords import TakesKeywords, takes_keywords
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.scenario import Scenario, check_scenario
@@ -337,7 +337,7 @@ def _prepared(
     scenarios: Sequence[Scenario | _core.PreparedScenario],
 ) -> list[_core.PreparedScenario]:
     """Validate the scenarios unless already done; build equal robots and grounds once."""
-    if not isinstance(scenarios, Iterable):
+    if not is_iterable(scenarios):
         raise ScenarioError("scenarios", scenarios, "must be several: give them in a list")
     found: list[_core.PreparedScenario] = []
     for each in scenarios:

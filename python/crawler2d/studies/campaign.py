@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any, TypedDict
 
 import numpy as np
 
-from crawler2d.common.arrays import whole_number
 from crawler2d.common.keywords import read_choice
 from crawler2d.errors import ScenarioError, raise_first
 from crawler2d.parameters.scenario import Scenario, check_scenario
@@ -407,8 +406,7 @@ def campaign(
     if repeats is None:
         until = Until(threshold=threshold)
     else:
-        count = whole_number(repeats, "repeats", 1, 10**6)
-        until = Until(min_runs=count, max_runs=count)
+        until = Until(min_runs=repeats, max_runs=repeats)
     given: RateSampling = {"until": until, **how}
     if not isinstance(given["until"], Until):
         raise ScenarioError("until", given["until"], "must be an Until")

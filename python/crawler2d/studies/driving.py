@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Unpack
 
 import numpy as np
 
-from crawler2d.common.arrays import real_number
+from crawler2d.common.arrays import real_number, whole_number
 from crawler2d.common.keywords import takes_keywords
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.fields import read_path
@@ -190,7 +190,8 @@ def _limiting_study(
         _check_fields(own, f"models[{label!r}]")
     changes = (UNCHANGED, figure.command, TORQUE, FRICTION)
     plane, swept = on_plane(scenario, given), paths_of(fields)
-    with campaign(plane, _sampling(how), swept, repeats=repeats) as study:
+    count = whole_number(repeats, "repeats", 1, 10**6)
+    with campaign(plane, _sampling(how), swept, repeats=count) as study:
         run_ups = [
             RunUp(
                 (f"model={label}", f"change={change.label}"),

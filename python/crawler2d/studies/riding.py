@@ -120,7 +120,9 @@ def ride(
         ),
     }
     fields = read_models(scenario, models)
-    with campaign(scenario, how, paths_of(fields), repeats=repeats) as study:
+    with campaign(
+        scenario, how, paths_of(fields), repeats=whole_number(repeats, "repeats", 1, 10**6)
+    ) as study:
         cells = [Cell((f"model={label}",), scenario.replace(own)) for label, own in fields.items()]
         tallies = study.repeat(cells)
         table = measure_table(
@@ -185,7 +187,9 @@ def odometry(
     check_study(scenario)
     changes: tuple[Change, ...] = (UNCHANGED, FRICTION)
     fields = read_models(scenario, models)
-    with campaign(scenario, how, paths_of(fields), repeats=repeats) as study:
+    with campaign(
+        scenario, how, paths_of(fields), repeats=whole_number(repeats, "repeats", 1, 10**6)
+    ) as study:
         cells = [
             Cell(
                 (f"model={label}", f"change={change.label}"),

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from crawler2d.common.arrays import real_number
+from crawler2d.common.arrays import is_iterable, real_number
 from crawler2d.common.extras import extra
 from crawler2d.errors import ScenarioError, warn
 from crawler2d.parameters.scenario import Scenario, check_scenario
@@ -137,7 +137,7 @@ def read_numbers(values: object, place: str) -> list[float]:
     ScenarioError
         If it is anything else.
     """
-    listed = list(values) if isinstance(values, Iterable) and not isinstance(values, str) else []
+    listed = list(values) if is_iterable(values) and not isinstance(values, str) else []
     if not listed:
         raise ScenarioError(place, values, "must be one number or more, in a list")
     return [real_number(value, f"{place}[{k}]") for k, value in enumerate(listed)]

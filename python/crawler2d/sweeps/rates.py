@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from crawler2d.common.arrays import is_iterable
 from crawler2d.common.extras import extra
 from crawler2d.common.keywords import read_choice, takes_keywords
 from crawler2d.errors import ScenarioError, warn
@@ -148,7 +149,7 @@ def rates_of(
     else:
         runs = xr.Dataset({"outcome": ("repeat", np.array(_texts(table), dtype=str))})
     outcomes = runs["outcome"]
-    given = dict.fromkeys(dim) if isinstance(dim, Iterable) and not isinstance(dim, str) else [dim]
+    given = dict.fromkeys(dim) if is_iterable(dim) and not isinstance(dim, str) else [dim]
     dims = [read_choice(each, "dim", [str(name) for name in outcomes.dims]) for each in given]
     with xr.set_options(keep_attrs=True):  # attributes of the coordinates
         valid = outcomes.isin([str(each) for each in Outcome])
@@ -233,11 +234,12 @@ def _warn_of_few(rates: xarray.Dataset) -> None:
 
 def _distinct(valid: NDArray[np.bool_], *steps: NDArray[np.float64]) -> int:
     """Count the distinct poses, rounded to whole steps, of runs with a result."""
-    return len(set(zip(*(each[valid].tolist() for each in steps), strict=True)))
+    values = (np.asarray(each)[np.asarray(valid)].tolist() for each in steps)  # one run is a scalar
+    return len(set(zip(*values, strict=True)))
 
 
 def _texts(outcomes: object) -> list[str]:
-    if not isinstance(outcomes, Iterable):
+    if not is_iterable(outcomes):
         raise ScenarioError("table", outcomes, "must be what sweep returned, or outcomes in a list")
     names = list(Outcome)
     outcomes = list(outcomes)

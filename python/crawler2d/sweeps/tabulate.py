@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from crawler2d._core import PreparedScenario
-from crawler2d.common.arrays import read_bool, whole_number
+from crawler2d.common.arrays import is_iterable, read_bool, whole_number
 from crawler2d.common.extras import extra
 from crawler2d.common.keywords import read_choice
 from crawler2d.common.units import METRICS
@@ -142,7 +142,7 @@ def table(runs: Iterable[Run] | str | PathLike[str]) -> xarray.Dataset:
         origin["build"] = [build for _, build, _ in stored]
         origin["trials"] = [", ".join(trials) for _, _, trials in stored]
     else:
-        if not isinstance(runs, Iterable):
+        if not is_iterable(runs):
             raise ScenarioError("runs", runs, "must be several: give them in a list")
         rows, tried = [], []
         for index, run in enumerate(runs):
