@@ -40,6 +40,19 @@ def test_a_study_of_something_else_than_a_scenario_is_refused(name: str, given: 
         STUDIES[name](given)
 
 
+def test_where_a_robot_or_scenario_is_needed_a_reading_is_answered_with_its_robot() -> None:
+    reading: Any = c2d.read_robot(c2d.samples.path())
+    step = c2d.terrains.step(0.05)
+    with_robot: tuple[Any, ...] = (c2d.simulate, c2d.jams, c2d.Scenario)
+    for call in with_robot:
+        with pytest.raises(c2d.ScenarioError, match=r"Robot, got .*; use reading\.robot$"):
+            call(reading, step)
+    with_scenario: tuple[Any, ...] = (c2d.Simulation, c2d.studies.max_obstacle)
+    for call in with_scenario:
+        with pytest.raises(c2d.ScenarioError, match=r": write Scenario\(reading.robot, terrain\)$"):
+            call(reading)
+
+
 @pytest.mark.parametrize("name", sorted(set(STUDIES) - {"certify", "compare"}))
 def test_a_study_without_xarray_names_its_extra_before_anything_runs(
     name: str, monkeypatch: pytest.MonkeyPatch

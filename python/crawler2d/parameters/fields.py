@@ -173,7 +173,16 @@ def _remedy(value: Any, kinds: tuple[Any, ...]) -> str:
     """Say what is wrong where the value does not show it."""
     if isinstance(value, type) and issubclass(value, Parameters):
         return f"; write {value.__name__}(...)"
+    if inside := robot_inside(value, kinds):
+        return f"; use {inside}"
     return ", not a string" if isinstance(value, str) and not {float, int}.isdisjoint(kinds) else ""
+
+
+def robot_inside(value: Any, kinds: tuple[Any, ...]) -> str:
+    """Write the attribute of a value, such as what `read_robot` returned, that holds a robot."""
+    # Looked up in the class first, as attributes of foreign objects may do anything.
+    is_there = hasattr(type(value), "robot") and type(value.robot) in kinds
+    return f"{type(value).__name__.lower()}.robot" if is_there else ""
 
 
 _FIELDS: dict[type[Parameters], list[dataclasses.Field[Any]]] = {}

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from crawler2d import _core
 from crawler2d.common.keywords import takes_keywords
 from crawler2d.errors import ScenarioError, warn
-from crawler2d.parameters.fields import fields_of, from_dict, replace_path
+from crawler2d.parameters.fields import fields_of, from_dict, replace_path, robot_inside
 from crawler2d.parameters.robot import Robot
 from crawler2d.parameters.settings import ScenarioBase
 from crawler2d.parameters.terrain import Terrain
@@ -237,7 +237,9 @@ def _refuse_another_object(text: str) -> None:
 def check_scenario(scenario: object) -> Scenario:
     """Refuse an argument `scenario` that is not a Scenario."""
     if not isinstance(scenario, Scenario):
-        raise ScenarioError("scenario", scenario, "must be a Scenario")
+        inside = robot_inside(scenario, (Robot,))
+        remedy = f": write Scenario({inside}, terrain)" if inside else ""
+        raise ScenarioError("scenario", scenario, f"must be a Scenario{remedy}")
     return scenario
 
 

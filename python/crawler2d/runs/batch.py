@@ -9,7 +9,7 @@ from crawler2d import _core
 from crawler2d.common.arrays import is_iterable
 from crawler2d.common.keywords import read_choice, refuse_unknown, takes_keywords
 from crawler2d.errors import RunUnfinished, ScenarioError, own_error, raise_first
-from crawler2d.parameters.fields import field_hints, known_paths
+from crawler2d.parameters.fields import field_hints, known_paths, robot_inside
 from crawler2d.parameters.robot import Robot
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.terrain import Terrain
@@ -218,7 +218,9 @@ def complete(
     if isinstance(scenario, Scenario):
         whole = scenario if terrain is None else scenario.replace({"terrain": terrain})
     elif not isinstance(scenario, Robot):
-        raise ScenarioError("scenario", scenario, "must be a Scenario or a Robot")
+        inside = robot_inside(scenario, (Robot,))
+        remedy = f"; use {inside}" if inside else ""
+        raise ScenarioError("scenario", scenario, f"must be a Scenario or a Robot{remedy}")
     elif terrain is None:
         raise ScenarioError("terrain", terrain, "must be given with a robot")
     else:
