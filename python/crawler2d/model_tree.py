@@ -176,6 +176,8 @@ class Friction:
         Priority of this shape's coefficients over those of others, in MuJoCo.
     first_at, second_at : Where
         The lines of both.
+    slips : tuple of (float, Where)
+        [m/s per N] Slip along both directions in proportion to the force, and its lines.
     """
 
     first: float
@@ -184,6 +186,7 @@ class Friction:
     priority: int = 0
     first_at: Where = NOWHERE
     second_at: Where = NOWHERE
+    slips: tuple[tuple[float, Where], ...] = ()
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)

@@ -56,7 +56,10 @@ def of_link(link: Link) -> Iterator[str]:
             reach = f"{told(shape.points.min(axis=0))} to {told(shape.points.max(axis=0))}"
             yield f"    {len(shape.points)} points, {reach}"
         if shape.friction is not None:
-            yield f"    friction {', '.join(told(value) for _, value in own(shape.friction))}"
+            values = (
+                told(value) for name, value in own(shape.friction) if name != "slips" or value
+            )
+            yield f"    friction {', '.join(values)}"
     for unread in link.unread:
         yield f"  unread {unread.name} at {unread.at}: {unread.reason}"
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import crawler2d as c2d
-from tests.reading.carts import SIDES, TRACKED, quietly, read, refused, tracked
+from tests.reading.carts import SIDES, TRACKED, WHEELS, quietly, read, refused, tracked, urdf
 
 TRAPEZOID = ((-0.5, 0.1, 0.1), (-0.3, 0.0, 0.1), (0.3, 0.0, 0.1), (0.5, 0.1, 0.08))
 """A raised sprocket, two road wheels and a raised idler: x, z and radius [m]."""
@@ -236,3 +236,34 @@ def test_speed_and_acceleration_of_a_vehicle_with_tracks_are_those_of_its_plugin
     assert drivetrain.max_speed == 0.4
     assert (drivetrain.max_acceleration, drivetrain.max_deceleration) == (0.3, 2.0)
     assert reading.sources["robot.drivetrain.max_speed"].startswith("tank.sdf:")
+
+
+def test_track_controllers_of_unlike_limits_get_a_warning(tmp_path: Path) -> None:
+    text = tracked(((-0.4, 0.0, 0.1), (0.4, 0.0, 0.1)))
+    link, speed = "<link>left</link>", "<max_velocity>0.5</max_velocity>"
+    assert link in text
+    one = read(tmp_path, text.replace(link, f"{link}{speed}"), "tank.sdf")
+    (warning,) = [each for each in one.warnings if "max_velocity" in each]
+    assert warning.startswith("tank.sdf:")
+    assert warning.endswith("differs between tracks: all have the smallest, got 0.5, none")
+    assert one.robot.drivetrain.max_speed == 0.5
+    both = read(tmp_path, text.replace("</link></plugin>", f"</link>{speed}</plugin>"), "tank.sdf")
+    assert not [each for each in both.warnings if "max_velocity" in each]
+
+
+def test_slip_in_proportion_to_the_force_gets_a_warning_where_it_is_along_the_track(
+    tmp_path: Path,
+) -> None:
+    text = tracked(((-0.4, 0.0, 0.1), (0.4, 0.0, 0.1)))
+    ode = "<ode><slip1>{}</slip1><slip2>{}</slip2></ode>"
+    for slips, count in (((0.01, 0), 1), ((0, 0.01), 0)):
+        surface = f"<surface><friction>{ode.format(*slips)}</friction></surface></collision>"
+        reading = read(tmp_path, text.replace("</collision>", surface), "tank.sdf")
+        found = [each for each in reading.warnings if "slip" in each]
+        assert len(found) == count
+    plugin = """<gazebo><plugin name="x" filename="gz-sim-wheel-slip-system"><wheel link_name="w">
+    <slip_compliance_lateral>1</slip_compliance_lateral>
+    <slip_compliance_longitudinal>0.02</slip_compliance_longitudinal></wheel></plugin></gazebo>"""
+    text = urdf(WHEELS).replace("</robot>", f"{plugin}</robot>")
+    (warning,) = [each for each in read(tmp_path, text).warnings if "slip" in each]
+    assert warning.endswith("slips at the limit of friction alone, got 0.02 m/s per N")

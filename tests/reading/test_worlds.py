@@ -114,3 +114,10 @@ def test_an_audit_says_whether_the_file_states_the_floor(tmp_path: Path) -> None
         found = unknown_of_file(subject.reading, subject.floors)
         source = found.sources["terrain.friction"]
         assert source.startswith(f"that of the floor, {told}, is taken as 0.5 to 1; gz combines")
+
+
+def test_what_a_flag_of_mujoco_disables_gets_a_warning(tmp_path: Path) -> None:
+    pytest.importorskip("mujoco")
+    flags = '<option><flag gravity="disable" actuation="enable" warmstart="disable"/></option>'
+    (found,) = of_gravity(in_mujoco(tmp_path, flags))
+    assert "option/flag@gravity is not used: here it is enabled, got disable" in found

@@ -27,6 +27,7 @@ from crawler2d.reading.running_gear import (
     running_gear_of,
     side_view,
 )
+from crawler2d.reading.slip import warn_of_slip
 from crawler2d.reading.surfaces import surfaces_of
 from crawler2d.reading.tracks import (
     Base,
@@ -331,6 +332,7 @@ def assemble(
     runners = [runner for _, runner in work.log.rows]
     friction, source, places = combine_friction(runners, work.view, engine, ground)
     work.log.sources["friction"] = f"{source}: {lines(places)}" if places else source
+    warn_of_slip(work.log, runners, work.view)
     return robot, friction, work
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from typing import Literal
 
 from crawler2d.errors import ScenarioError
-from crawler2d.model_tree import Joint, Shape, Tree, Where
+from crawler2d.model_tree import Friction, Joint, Shape, Tree, Where
 from crawler2d.parameters.drivetrain import PI, Drivetrain
 from crawler2d.parameters.track import BeltTrack, LineOfWheels, Track
 from crawler2d.reading.log import ReadLog, estimate, lines, list_names
@@ -21,6 +21,7 @@ from crawler2d.reading.speeds import (
     acceleration_of,
     deceleration_of,
     speed_of,
+    warn_of_controllers,
     warn_of_speeds,
 )
 from crawler2d.reading.wheels import Runner
@@ -32,6 +33,7 @@ __all__ = [
     "Engine",
     "combine_friction",
     "drivetrain_of",
+    "is_first_along",
     "report_losses",
     "resistance",
     "rotor_inertia",
@@ -357,6 +359,7 @@ def drivetrain_of(
     log.notes.append(ENGINES[engine].description(is_belt=isinstance(tracks[0], BeltTrack)))
     speed, speed_source = speed_of(tree, [*pairs, *on_flippers])
     warn_of_speeds(log, [*pairs, *on_flippers], speed)
+    warn_of_controllers(log)
     alone, _ = speed_of(tree, pairs)
     if speed < alone:
         log.notes.append(
@@ -421,24 +424,26 @@ def drivetrain_of(
 def _friction_along(
     runner: Runner, shape: Shape, view: SideView, usual: float
 ) -> tuple[float, int, Where | None]:
-    """Return the coefficient along the track, its priority, and its line.
-
-    A track controller turns the first direction along the track. Otherwise it is fdir1, in the
-    frame of the collision; without fdir1 an engine may choose any direction, so the smaller
-    coefficient counts.
-    """
+    """Return the coefficient along the track, its priority, and its line."""
     friction = shape.friction
     if friction is None:
         return usual, 0, None
-    if runner.joint is None:
-        is_first = True
-    elif friction.direction is None:
-        is_first = friction.first <= friction.second
-    else:
-        is_first = bool(abs(friction.direction @ view.left) <= math.sqrt(0.5))
-    if is_first:
+    if is_first_along(runner, friction, view):
         return friction.first, friction.priority, friction.first_at
     return friction.second, friction.priority, friction.second_at
+
+
+def is_first_along(runner: Runner, friction: Friction, view: SideView) -> bool:
+    """Whether the first direction of a surface, instead of the second, is along the track.
+
+    A track controller turns it there. Otherwise it is fdir1, in the frame of the collision; without
+    fdir1 an engine may choose any direction, so the smaller coefficient counts.
+    """
+    if runner.joint is None:
+        return True
+    if friction.direction is None:
+        return friction.first <= friction.second
+    return bool(abs(friction.direction @ view.left) <= math.sqrt(0.5))
 
 
 def _states(joint: Joint, *names: str) -> bool:

@@ -62,6 +62,7 @@ _ON_JOINTS = (0, 1)  # the numbers of transmissions to a joint, not a tendon, si
 _ON_TENDON = 3  # and to a tendon
 _OF_JOINT = 1  # the number of what a fixed tendon runs over
 _BY_JOINTS = 2  # the number of equations between joints
+_FLAGS = ("gravity", "contact", "actuation")  # can be disabled, but not here
 _INTEGRATOR = 1  # the number of the dynamics of an actuator whose activation is a position
 
 
@@ -97,6 +98,12 @@ def read_mjcf(root: Element, text: str, model: str | None, meshes: Meshes) -> Tr
     for option in root.all("option"):
         if "gravity" in option.attributes:
             warn_of_gravity(option, "gravity", meshes.warnings)
+        for flag in option.all("flag"):
+            meshes.warnings.extend(
+                (f"{flag.at}@{name}", "disable", "is not used: here it is enabled")
+                for name in _FLAGS
+                if flag.attributes.get(name) == "disable"
+            )
     return _Model(answer, root.where, meshes).tree(model)
 
 

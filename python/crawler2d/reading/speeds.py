@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import contextlib
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
-from crawler2d.model_tree import Tree, Where
+from crawler2d.model_tree import Plugin, Tree, Where
 from crawler2d.reading.log import ReadLog, estimate, lines
 from crawler2d.reading.parts import is_drive
 from crawler2d.reading.running_gear import Pair
@@ -19,6 +19,7 @@ __all__ = [
     "acceleration_of",
     "deceleration_of",
     "speed_of",
+    "warn_of_controllers",
     "warn_of_speeds",
 ]
 
@@ -30,6 +31,9 @@ FASTEST = 100.0
 ALIKE = 0.01
 """[-] Tolerated difference of rotors, forces or sides, relative to the largest, as files round."""
 
+_CONTROLLER = "trackcontroller"
+"""Name of Gazebo's plugin that moves one track, without its separators."""
+
 _SPEEDS = ("max_velocity", "max_linear_velocity", "linear_velocity/max_velocity")
 """Settings of Gazebo's TrackController, DiffDrive and TrackedVehicle."""
 
@@ -40,6 +44,12 @@ _RATES_OF_RIMS = ("max_wheel_acceleration", "wheelAcceleration")
 """Those of Gazebo Classic, both ways, which its source code takes as m/s^2 of the rim."""
 
 _QUICKEST = 1e6  # [m/s^2]
+_OF_TRACKS = {
+    "max_velocity": FASTEST,
+    "max_acceleration": _QUICKEST,
+    "min_acceleration": _QUICKEST,
+}
+"""Settings of Gazebo's TrackController, and from where on they are no limit."""
 _SPEED, _ACCELERATION, _DECELERATION = 1.0, 1.0, 4.0  # those of Robot.simple
 
 
@@ -69,6 +79,25 @@ def _speeds(tree: Tree, runners: Sequence[Runner]) -> list[tuple[float, Where]]:
 
 def _in_range(limits: Sequence[tuple[float, Where]]) -> list[tuple[float, Where]]:
     return [(speed, where) for speed, where in limits if 0.0 < speed <= FASTEST]
+
+
+def warn_of_controllers(log: ReadLog) -> None:
+    """Warn if track controllers have unlike limits, as all tracks have one speed."""
+    controllers = [
+        plugin
+        for plugin in log.tree.plugins
+        if _CONTROLLER in f"{plugin.name} {plugin.filename}".lower().replace("-", "")
+    ]
+    for name, most in _OF_TRACKS.items():
+        stated = [_numbers((plugin,), (name,)) for plugin in controllers]
+        numbers = [abs(own[0][0]) if own else math.inf for own in stated]
+        limits = {each if 0.0 < each <= most else math.inf for each in numbers}
+        if limits and not math.isclose(min(limits), max(limits), rel_tol=ALIKE):
+            value = ", ".join(
+                "none" if each == math.inf else f"{each:g}" for each in sorted(limits)
+            )
+            path = f"{lines([plugin.at for plugin in controllers])}: {name}"
+            log.add_warning(path, value, "differs between tracks: all have the smallest")
 
 
 def warn_of_speeds(log: ReadLog, pairs: Sequence[Pair], speed: float) -> None:
@@ -106,12 +135,21 @@ def _rate(tree: Tree, which: str, usual: float) -> tuple[float, str]:
 
 def _of_plugins(tree: Tree, names: Sequence[str]) -> list[tuple[float, Where]]:
     """List the numbers that plugins of drives state under some names."""
+    driving = (
+        plugin
+        for plugin in tree.plugins
+        if is_drive(plugin) or "track" in f"{plugin.name} {plugin.filename}".lower()
+    )
+    return _numbers(driving, names)
+
+
+def _numbers(plugins: Iterable[Plugin], names: Sequence[str]) -> list[tuple[float, Where]]:
+    """List the numbers that plugins state under some names."""
     found = []
-    for plugin in tree.plugins:
-        if is_drive(plugin) or "track" in f"{plugin.name} {plugin.filename}".lower():
-            for text, where in plugin.values(*names):
-                with contextlib.suppress(ValueError):
-                    found.append((float(text), where))
+    for plugin in plugins:
+        for text, where in plugin.values(*names):
+            with contextlib.suppress(ValueError):
+                found.append((float(text), where))
     return found
 
 
