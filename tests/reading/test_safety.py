@@ -10,7 +10,7 @@ import pytest
 import crawler2d as c2d
 from crawler2d.reading import parsing
 from tests.kept import refusing
-from tests.reading.carts import FILES, SAID, WHEELS, XACRO, read, urdf
+from tests.reading.carts import FILES, SAID, WHEELS, XACRO, quietly, read, urdf
 
 pytestmark = pytest.mark.usefixtures("children_of_its_own")
 
@@ -105,6 +105,25 @@ def test_frames_in_a_circle_are_refused(tmp_path: Path) -> None:
     frames += '<frame name="f"><pose relative_to="a"/></frame>'
     text = f'<sdf version="1.7"><model name="m">{frames}</model></sdf>'
     refused(tmp_path, text, "must not be defined relative to itself", "m.sdf")
+
+
+@pytest.mark.parametrize("count", [3, 300])
+def test_a_joint_of_frames_in_a_row_joins_their_link_unless_they_are_in_a_circle(
+    tmp_path: Path, count: int
+) -> None:
+    def framed(last: str) -> str:
+        ends = [*(f"f{n}" for n in range(1, count)), last]
+        frames = "".join(f'<frame name="f{n}" attached_to="{end}"/>' for n, end in enumerate(ends))
+        text = (FILES / "cart.sdf").read_text(encoding="utf-8")
+        assert "<child>left_rear</child>" in text
+        text = text.replace("<child>left_rear</child>", "<child>f0</child>")
+        return text.replace("</model>", f"{frames}</model>")
+
+    assert (
+        read(tmp_path, framed("left_rear"), "cart.sdf").robot == quietly(FILES / "cart.sdf").robot
+    )
+    rule = "must join links, not frames that are attached in a circle"
+    refused(tmp_path, framed("f0"), rule, "cart.sdf")
 
 
 @pytest.mark.parametrize(

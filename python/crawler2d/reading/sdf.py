@@ -56,7 +56,6 @@ SCOPE = "::"
 _USUAL_MASS = 1.0  # [kg] Of a link without a stated mass.
 _USUAL_DENSITY = 1000.0  # [kg/m^3] Default for masses computed from volumes: that of water.
 _DYNAMICS = {"stiffness": "spring_stiffness", "damping": "damping", "friction": "friction"}
-_LONGEST_CHAIN = 100  # Most frames in a row, each attached to the next.
 
 
 @dataclass(slots=True)
@@ -355,6 +354,9 @@ class _Model:
         joint = part.element
         parent, child = (joint.needed(end).text for end in ("parent", "child"))
         ends = self.carrier(part.scope + parent), self.carrier(part.scope + child)
+        for end in ends:
+            if end in self.attached:
+                joint.refuse(end, "must join links, not frames that are attached in a circle")
         reason = ""
         if "world" in (parent, child):
             reason = "it fixes the robot to the world, but the robot has to drive"
@@ -368,11 +370,15 @@ class _Model:
         return ends
 
     def carrier(self, name: str) -> str:
-        """Return the link that a frame, joint or nested model is attached to, or else its name."""
-        for _ in range(_LONGEST_CHAIN):  # a longer chain is a circle
-            if name not in self.attached:
-                break
+        """Return the link that a frame, joint or nested model is attached to, or else its name.
+
+        Of frames in a circle, it is the name of one of them.
+        """
+        passed: dict[str, None] = {}
+        while name in self.attached and name not in passed:
+            passed[name] = None
             name = self.attached[name]
+        self.attached |= dict.fromkeys(passed, name)  # long chains are followed once
         return name
 
     @cached_property
