@@ -91,6 +91,8 @@ def test_a_robot_that_shall_stand_does_not_drive_on() -> None:
     step = c2d.terrains.step(0.05)
     parked = c2d.simulate(ROBOT, step, drive=c2d.Drive(speed=0.0), duration=0.1, record="summary")
     assert parked.reason == "timed out after 0.10 s, with a commanded speed of 0"
+    at_once = c2d.simulate(ROBOT, step, duration=0.0)
+    assert at_once.reason == "timed out after 0.00 s, before its first stop window was over"
     halted = c2d.Drive(speed=0.3, schedule=((1.2, 0.0), (9.0, 0.3)))
     for record in ("full", "summary"):
         run = c2d.simulate(ROBOT, step, drive=halted, duration=1.5, record=record)

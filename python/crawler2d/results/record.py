@@ -137,7 +137,9 @@ class Record:
         """How a robot drove that neither cleared nor stopped."""
         drive, time, progress = self.scenario.drive, self.metrics["time"], self.metrics["progress"]
         passed = [speed for start, speed in drive.schedule or () if start <= time]
-        commanded = self.commanded_speed if self._trace else [drive.speed, *passed]
+        commanded = [drive.speed, *passed]
+        if self._trace and len(self.time) > 1:  # a simulation had commands of its own
+            commanded = self.commanded_speed.tolist()
         if commanded[-1] == 0.0:
             return "with a commanded speed of 0"
         if progress == 1.0:
