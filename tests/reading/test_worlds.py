@@ -121,3 +121,28 @@ def test_what_a_flag_of_mujoco_disables_gets_a_warning(tmp_path: Path) -> None:
     flags = '<option><flag gravity="disable" actuation="enable" warmstart="disable"/></option>'
     (found,) = of_gravity(in_mujoco(tmp_path, flags))
     assert "option/flag@gravity is not used: here it is enabled, got disable" in found
+
+
+@pytest.mark.parametrize(
+    ("name", "before", "off", "on"),
+    [
+        ("cart.sdf", '<link name="hull">', "<gravity>0</gravity>", "<gravity>1</gravity>"),
+        (
+            "cart.urdf",
+            '<robot name="cart">',
+            "<gazebo><turnGravityOff>true</turnGravityOff></gazebo>",
+            "<gazebo><turnGravityOff>false</turnGravityOff></gazebo>",
+        ),
+        ("cart.xml", "<body", ' gravcomp="1"', ' gravcomp="0.0"'),
+    ],
+)
+def test_a_link_without_gravity_gets_a_warning(
+    tmp_path: Path, name: str, before: str, off: str, on: str
+) -> None:
+    if name == "cart.xml":
+        pytest.importorskip("mujoco")
+    text = (FILES / name).read_text(encoding="utf-8")
+    assert before in text
+    (found,) = of_gravity(read(tmp_path, text.replace(before, before + off, 1), name))
+    assert found.endswith("is not used: here every link has its weight, got 1 without gravity")
+    assert of_gravity(read(tmp_path, text.replace(before, before + on, 1), name)) == []

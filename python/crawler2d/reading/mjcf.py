@@ -42,6 +42,7 @@ from crawler2d.reading.parts import (
     order_links,
     warn_of_gravity,
     warn_of_tilt,
+    warn_of_weightless,
 )
 
 __all__ = ["read_mjcf"]
@@ -95,6 +96,7 @@ def read_mjcf(root: Element, text: str, model: str | None, meshes: Meshes) -> Tr
     question = {"text": text, "file": file, "files": meshes.files.parameters}
     answer = ask_child(__name__, question, file=file, files=meshes.files)
     _check_numbers(answer, file)
+    warn_of_weightless(root, meshes.warnings)
     for option in root.all("option"):
         if "gravity" in option.attributes:
             warn_of_gravity(option, "gravity", meshes.warnings)

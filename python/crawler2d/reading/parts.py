@@ -51,6 +51,7 @@ __all__ = [
     "solid",
     "warn_of_gravity",
     "warn_of_tilt",
+    "warn_of_weightless",
     "wheel_torques",
 ]
 
@@ -385,6 +386,25 @@ def warn_of_gravity(
             value = " ".join(f"{each:g}" for each in vector)
             reason = "is not used: here gravity is 9.81 m/s^2 downwards, or Scenario.gravity"
             warnings.append((path, value, reason))
+
+
+def warn_of_weightless(model: Element, warnings: list[ReadingWarning]) -> None:
+    """Warn of links without gravity, as SDF, extensions of URDF and MJCF may have them."""
+    found = [
+        each
+        for each in model.within()
+        if (each.tag == "gravity" and each.text in ("0", "false") and _is_in(each, "link"))
+        or (each.tag == "turnGravityOff" and each.text in ("1", "true"))
+        or (each.tag == "body" and each.attributes.get("gravcomp", "0").strip(" 0.") != "")
+    ]
+    if found:
+        path = f"{found[0].at}@gravcomp" if found[0].tag == "body" else found[0].at
+        value = f"{len(found)} without gravity"
+        warnings.append((path, value, "is not used: here every link has its weight"))
+
+
+def _is_in(element: Element, tag: str) -> bool:
+    return element.parent is not None and element.parent.tag == tag
 
 
 def coefficient(element: Element | None, owner: Element) -> Limit:

@@ -47,6 +47,7 @@ from crawler2d.reading.parts import (
     solid,
     warn_of_gravity,
     warn_of_tilt,
+    warn_of_weightless,
 )
 
 __all__ = ["MODEL", "SCOPE", "read_sdf"]
@@ -297,6 +298,7 @@ class _Model:
     def tree(self) -> Tree:
         placed, _ = _pose_of(self.model, [])
         warn_of_tilt(f"{self.model.at}: pose", placed, "model", self.warnings)
+        warn_of_weightless(self.model, self.warnings)
         joints = {}
         ends = []
         for part in self.parts("joint"):

@@ -43,6 +43,7 @@ from crawler2d.reading.parts import (
     order_links,
     plugin_of,
     shape_of,
+    warn_of_weightless,
 )
 
 __all__ = ["read_urdf"]
@@ -89,6 +90,7 @@ def read_urdf(root: Element, meshes: Meshes, *, leave_out: bool, is_bullet: bool
         }
     )
     warnings = meshes.warnings
+    warn_of_weightless(root, warnings)
     ends, ground = [], ""
     for element in root.all("joint"):
         parent, child = (element.needed(end).attribute("link") for end in ("parent", "child"))
