@@ -116,6 +116,16 @@ def test_an_audit_says_whether_the_file_states_the_floor(tmp_path: Path) -> None
         assert source.startswith(f"that of the floor, {told}, is taken as 0.5 to 1; gz combines")
 
 
+def test_friction_of_pairs_and_overrides_of_mujoco_gets_a_warning(tmp_path: Path) -> None:
+    pytest.importorskip("mujoco")
+    option = '<option o_friction="0.1 0.1 0 0 0"><flag override="enable"/></option>'
+    pair = '<contact><pair geom1="a" geom2="b" friction="0.1"/></contact>'
+    geoms = '<geom name="a" size="1"/><geom name="b" size="1"/>'
+    found = in_mujoco(tmp_path, f"{option}{pair}", geoms).warnings
+    assert [each for each in found if "contact/pair is not used: here surfaces" in each]
+    assert [each for each in found if "option/flag@override is not used: here surf" in each]
+
+
 def test_what_a_flag_of_mujoco_disables_gets_a_warning(tmp_path: Path) -> None:
     pytest.importorskip("mujoco")
     flags = '<option><flag gravity="disable" actuation="enable" warmstart="disable"/></option>'

@@ -97,6 +97,10 @@ def read_mjcf(root: Element, text: str, model: str | None, meshes: Meshes) -> Tr
     answer = ask_child(__name__, question, file=file, files=meshes.files)
     _check_numbers(answer, file)
     warn_of_weightless(root, meshes.warnings)
+    pairs = [each for contact in root.all("contact") for each in contact.all("pair")]
+    if pairs:
+        reason = "is not used: here surfaces have the friction of their geoms"
+        meshes.warnings.append((pairs[0].at, f"{len(pairs)} of them", reason))
     for option in root.all("option"):
         if "gravity" in option.attributes:
             warn_of_gravity(option, "gravity", meshes.warnings)
@@ -106,6 +110,9 @@ def read_mjcf(root: Element, text: str, model: str | None, meshes: Meshes) -> Tr
                 for name in _FLAGS
                 if flag.attributes.get(name) == "disable"
             )
+            if flag.attributes.get("override") == "enable":
+                reason = "is not used: here surfaces have the figures of their geoms"
+                meshes.warnings.append((f"{flag.at}@override", "enable", reason))
     return _Model(answer, root.where, meshes).tree(model)
 
 
