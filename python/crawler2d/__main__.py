@@ -204,6 +204,8 @@ class _Parser(argparse.ArgumentParser):
 
     def refuse(self, unknown: Sequence[str]) -> NoReturn:
         name = unknown[0].partition("=")[0]
+        if not name.startswith("-"):
+            self.error(f"one argument too many: {unknown[0]}")
         options = [each for action in self._actions for each in action.option_strings]
         self.error(f"unknown option {name}{suggestion(name, options)}")
 

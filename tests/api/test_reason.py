@@ -99,6 +99,10 @@ def test_a_robot_that_shall_stand_does_not_drive_on() -> None:
         assert run.reason == "timed out after 1.50 s, with a commanded speed of 0"
 
 
+def test_the_meaning_of_timing_out_includes_robots_that_shall_stand() -> None:
+    assert "was to stand" in c2d.Outcome.TIMED_OUT.meaning
+
+
 def test_progress_before_the_first_stop_window_is_over_is_not_known() -> None:
     pushing = c2d.simulate(ROBOT, c2d.terrains.step(0.3), duration=0.5)
     assert pushing.reason == "timed out after 0.50 s, before its first stop window was over"

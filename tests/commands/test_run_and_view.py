@@ -184,6 +184,7 @@ def write_bad_files(folder: Path) -> None:
         ("run clears.json --html a --save ../{}/a", "--save must differ from --"),
         ("view whole.npz --out whole.npz", "--out must differ from the input file"),
         ("run clears.json --htlm a.html", "unknown option --htlm (did you mean --html?)"),
+        ("run clears.json cut.json", "one argument too many: cut.json"),
         ("run", "the following arguments are required: FILE"),
         ("view missing.npz", "FILE must be a file that can be read (No such file or directory)"),
         ("view cut.npz", "cut.npz is cut short or damaged: copy it again"),

@@ -18,7 +18,7 @@ OUTCOMES = {
     "hung_up": "stopped with criteria.belly_load of the load or more on the belly",
     "stalled": "stopped with at least half of the motors on the ground at their torque limit",
     "slipping": "stopped while the track slips",
-    "timed_out": "the time was over while the robot was moving, or in a transient stop",
+    "timed_out": "the time was over while it was moving or was to stand, or in a transient stop",
 }
 """Outcomes of a run; if several apply, the first."""
 
