@@ -73,6 +73,8 @@ def test_a_survey_from_right_to_left_is_the_same_ground(file: Path) -> None:
         ("0 0 0\n1 0 0\n", ", line 1,", "0 0 0", "must have two numbers"),
         ("0,5;0,1\n1,5;0,1\n", ", line 1,", "0,5;0,1", "with decimal points"),
         ("", "", "0", "must have at least 2 lines with a point"),
+        ("x [mm],y [mm]\n0,0\n1,0\n", ", line 1,", "x [mm],y [mm]", "must name x and then y, in m"),
+        ("y;x\n0;0\n1;0\n", ", line 1,", "y;x", "must name x and then y, in metres"),
         ("x,y\n", "", "0", "must have at least 2 lines with a point"),
         ("x,y\n0,0\n", "", "1", "must have at least 2 lines with a point"),
     ],

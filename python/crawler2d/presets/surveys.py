@@ -21,6 +21,9 @@ __all__ = ["read_survey", "simplified"]
 # A comma or a semicolon, or white space alone.
 _SEPARATOR = re.compile(r"\s*[,;]\s*|\s+")
 
+# Names of columns with other units, or in the other order.
+_OTHERWISE = re.compile(r"\b(mm|cm|km|ft|feet|inch|inches|yd)\b|^y\b.*\bx\b", re.IGNORECASE)
+
 
 def read_survey(path: str | PathLike[str]) -> NDArray[np.float64]:
     """[m] Read the points of a file, shape (n, 2); see `terrains.from_csv`."""
@@ -40,6 +43,8 @@ def read_survey(path: str | PathLike[str]) -> NDArray[np.float64]:
         fields = _SEPARATOR.split(content)
         if is_first and not any(map(_is_number, fields)):
             is_first = False  # column names
+            if _OTHERWISE.search(content):
+                raise ScenarioError(where, content, "must name x and then y, in metres")
             continue
         is_first = False
         points.append(_read_point(fields, where, content))

@@ -199,8 +199,8 @@ def from_csv(
     path : str or path-like
         A text file with a point on each line: x and y [m] in order, from left to right or from
         right to left, as for `from_points`. Separators are commas, semicolons, tabs or spaces; the
-        decimal separator is a point. The first line may name the columns; empty lines and comments
-        after "#" are skipped.
+        decimal separator is a point. The first line may name the columns, but no units other than
+        m; empty lines and comments after "#" are skipped.
     goal : float
         [m] The x that the whole robot must pass.
     origin : float
