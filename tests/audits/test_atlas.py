@@ -35,6 +35,20 @@ def test_files_that_others_include_and_files_of_macros_are_no_models(forest: Pat
     assert names == ["cart/cart.urdf", "other/urdf/<b>.urdf", "other/urdf/whole.xacro"]
 
 
+def test_a_file_that_is_named_as_a_model_but_holds_none_is_listed_as_not_read(forest: Path) -> None:
+    (forest / "cart" / "empty.sdf").touch()
+    (forest / "cart" / "wide.urdf").write_text(urdf(WHEELS), encoding="utf-16")
+    (forest / "cart" / "large.xml").write_text(urdf(WHEELS) + " " * 4_000_000, encoding="utf-8")
+    names = [path.name for path in main_files(forest)]
+    assert names[-3:] == ["empty.sdf", "large.xml", "wide.urdf"]
+
+
+def test_a_page_in_a_file_is_refused(forest: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    page = forest / "cart" / "LICENSE" / "atlas.html"
+    assert main(["atlas", str(forest), "--html", str(page)]) == 2
+    assert "--html must be a file in a folder that exists" in capsys.readouterr().err
+
+
 def test_what_a_scene_of_mjcf_includes_is_a_model(tmp_path: Path) -> None:
     """It is read on its own; the scene is refused, as the reader does not follow MJCF includes."""
     folder = tmp_path / "robots"

@@ -10,6 +10,7 @@ import os
 import re
 import warnings
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -32,6 +33,7 @@ _HERE = "crawler2d.commands"
 _SAMPLES = 40
 
 _KINDS = (".sdf", ".world", ".urdf", ".xacro", ".xml", ".mjcf")
+_ANYTHING = (".xml", ".xacro")  # may hold something else
 _LARGEST = 4_000_000  # [bytes] as for any model file
 _MOST = 5000  # model files, all kept in memory
 _ROOTS = re.compile(rb"<\s*(sdf|robot|mujoco)[\s>]")
@@ -80,12 +82,13 @@ def run(options: argparse.Namespace) -> int:
     folder: Path = options.folder
     if not folder.is_dir():
         raise ScenarioError("FOLDER", str(folder), "must be a folder")
-    whole_number(options.samples, "samples", 1, 10**5)
+    whole_number(options.samples, "--samples", 1, 10**5)
     thread_count(options.threads)
     entries: list[Entry] = []
     try:
         files = list(main_files(folder))
-        options.html.parent.mkdir(parents=True, exist_ok=True)
+        with suppress(OSError):  # the check refuses what it could not make
+            options.html.parent.mkdir(parents=True, exist_ok=True)
         check_place("--html", options.html)
         for number, path in enumerate(files, 1):
             print(f"{number} of {len(files)}: {path}", flush=True)
@@ -105,8 +108,8 @@ def run(options: argparse.Namespace) -> int:
 def main_files(folder: Path) -> Iterator[Path]:
     """Yield the model files of a folder that no other file includes and that are not only macros.
 
-    A file included by an MJCF scene is a model and is read instead of the scene. Unreadable files
-    come last; reading them gives the reason.
+    A file included by an MJCF scene is a model and is read instead of the scene. Files that cannot
+    be read, are too large or hold no model come last; reading them gives the reason.
 
     Parameters
     ----------
@@ -136,8 +139,11 @@ def main_files(folder: Path) -> Iterator[Path]:
                 except OSError:
                     unread.append(path.relative_to(folder))
                     continue
-                if len(data) <= _LARGEST and _ROOTS.search(data):
+                is_model = _ROOTS.search(data) is not None
+                if is_model and len(data) <= _LARGEST:
                     found[path.relative_to(folder)] = data
+                elif is_model or path.suffix not in _ANYTHING:
+                    unread.append(path.relative_to(folder))
             if len(found) > _MOST:
                 raise ScenarioError("FOLDER", str(folder), f"must have at most {_MOST} model files")
     named = {
