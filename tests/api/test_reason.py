@@ -114,6 +114,19 @@ def test_a_title_says_when_the_goal_was_reached_as_the_metric_does() -> None:
     assert run.title.endswith(f"cleared after {run.metrics['time_to_clear']:.2f} s")
 
 
+def test_a_simulation_that_goes_on_says_when_the_robot_tipped_over() -> None:
+    sim = c2d.Simulation(c2d.Scenario(ROBOT, c2d.terrains.step(0.11)))
+    sim.advance(5.0)
+    run = sim.to_run()
+    assert run.outcome is c2d.Outcome.TIPPED_OVER
+    assert run.reason == "tipped over backwards after 2.60 s"
+    assert run.title.endswith(": tipped_over after 2.60 s")
+    end = c2d.terrains.from_points([(-3, 0), (0, 0), (9, 0)], goal=8.0, friction=0.9)
+    sim = c2d.Simulation(c2d.Scenario(ROBOT, end, drive=c2d.Drive(speed=-1.0)))
+    sim.advance(6.0)
+    assert sim.to_run().reason.startswith("left the terrain within 6.00 s: an end axle was")
+
+
 def test_a_title_says_when_a_stop_began_not_when_the_run_ended() -> None:
     wheels = ROBOT.without_rotors().with_track(c2d.LineOfWheels(4, wheel_radius=0.0608))
     run = c2d.simulate(wheels, c2d.terrains.step(0.075), record="summary")

@@ -112,18 +112,20 @@ class Record:
     @cached_property
     def _reason_without_stop(self) -> str:
         """Why a run with a result neither cleared nor stopped."""
-        metrics, after, text = self.metrics, f"after {self.metrics['time']:.2f} s", ""
+        metrics, after, text = self.metrics, self._when, ""
         match self.outcome:
             case Outcome.TIPPED_OVER:
                 tip_over = None if self.parent else find_tip_over(self.scenario, try_changes=False)
-                direction = "backwards" if metrics["final_angle"] > 0.0 else "forwards"
+                _, angle = self._tilt
+                direction = "backwards" if angle > 0.0 else "forwards"
                 text = str(tip_over or f"tipped over {direction} {after}")
             case Outcome.TIMED_OUT:
                 text = f"timed out {after}, {self._driving}"
             case Outcome.LEFT_TERRAIN:
+                place = "" if self.parent else f", at x = {metrics['final_x']:.3f} m"
                 text = (
-                    f"left the terrain {after}, at x = {metrics['final_x']:.3f} m: an end axle was"
-                    " beyond the described ground, or a metre below it"
+                    f"left the terrain {after}{place}: an end axle was beyond the described ground,"
+                    " or a metre below it"
                 )
             case Outcome.DETRACKED:
                 text = (
@@ -299,9 +301,30 @@ class Record:
             return type(self.error).__name__
         if self.diagnosis is not None and self.diagnosis.outcome.is_stop:
             return f"{self.outcome} at {self.diagnosis.since:.2f} s"
-        is_cleared = self.outcome is Outcome.CLEARED
-        time = self.metrics["time_to_clear" if is_cleared else "time"]
-        return f"{self.outcome} after {time:.2f} s"
+        return f"{self.outcome} {self._when}"
+
+    @property
+    def _when(self) -> str:
+        """When a run without a stop had its outcome; a simulation may have gone on after that."""
+        time, word = self.metrics["time"], "after"
+        match self.outcome:
+            case Outcome.CLEARED:
+                time = self.metrics["time_to_clear"]
+            case Outcome.TIPPED_OVER:
+                time, _ = self._tilt
+            case Outcome.LEFT_TERRAIN | Outcome.DETRACKED if self.parent:
+                word = "within"
+        return f"{word} {time:.2f} s"
+
+    @property
+    def _tilt(self) -> tuple[float, float]:
+        """[s], [rad] When the robot had tipped over, and the angle of the chassis."""
+        if self._trace:
+            over = np.abs(self.chassis_angle) > self.scenario.criteria.tip_over_angle
+            if over.any():
+                first = over.argmax()
+                return float(self.time[first]), float(self.chassis_angle[first])
+        return self.metrics["time"], self.metrics["final_angle"]
 
     @property
     def provenance(self) -> str:
