@@ -153,6 +153,15 @@ def test_a_run_of_another_build_is_not_repeated_by_this_one(saved: Path) -> None
     assert again.to_html()
 
 
+def test_a_fall_in_another_build_is_not_explained_by_one_in_this(tmp_path: Path) -> None:
+    saved = c2d.simulate(ROBOT, c2d.terrains.step(0.11)).save(tmp_path / "fall.npz")
+    change(saved, lambda about: about["build"].update(build_id="an earlier one"))
+    again = c2d.load(saved)
+    assert again.reason == "tipped over backwards after 2.61 s"
+    with pytest.raises(c2d.ScenarioError, match="not of an earlier one"):
+        again.tip_over()
+
+
 def test_page_and_data_set_of_a_run_name_its_build(saved: Path) -> None:
     change(saved, lambda about: about["build"].update(version="0.0.9", build_id="an earlier one"))
     again = c2d.load(saved)

@@ -94,7 +94,7 @@ class Record:
     def reason(self) -> str:
         """Why the robot did not clear, in a sentence; empty if it did.
 
-        For a stop it is the diagnosis; for a tip-over the run is simulated again.
+        For a stop it is the diagnosis; for a tip-over the run is simulated again, if by this build.
 
         Examples
         --------
@@ -115,7 +115,8 @@ class Record:
         metrics, after, text = self.metrics, self._when, ""
         match self.outcome:
             case Outcome.TIPPED_OVER:
-                tip_over = None if self.parent else find_tip_over(self.scenario, try_changes=False)
+                is_repeatable = self.parent is None and self.build is _BUILD
+                tip_over = is_repeatable and find_tip_over(self.scenario, try_changes=False)
                 _, angle = self._tilt
                 direction = "backwards" if angle > 0.0 else "forwards"
                 text = str(tip_over or f"tipped over {direction} {after}")

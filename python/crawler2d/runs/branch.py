@@ -33,6 +33,7 @@ __all__ = [
     "branch_time",
     "check_recording",
     "read_push",
+    "refuse_unrepeatable",
     "refuse_without_result",
     "run_of_trial",
     "simulate_branch",
@@ -178,7 +179,7 @@ def refuse_without_result(run: Record) -> None:
 
 def branch_time(run: Record, at: float | str) -> float:
     """[s] Read `at`: a time of the run, or the stop it ended in."""
-    _refuse_unrepeatable(run)
+    refuse_unrepeatable(run)
     end = run.metrics["time"]
     if isinstance(at, str) and at == "stop":
         if run.diagnosis is None:
@@ -196,14 +197,14 @@ def branch_time(run: Record, at: float | str) -> float:
 
 def stop_time(run: Record) -> float:
     """[s] The stop that a run ended in."""
-    _refuse_unrepeatable(run)
+    refuse_unrepeatable(run)
     if run.diagnosis is None:
         rule = f"must have ended in a stop, not as {run.outcome}: `reason` says why it ended"
         raise ScenarioError("run", run, rule)
     return run.diagnosis.time
 
 
-def _refuse_unrepeatable(run: Record) -> None:
+def refuse_unrepeatable(run: Record) -> None:
     """Refuse a run that cannot be repeated bit by bit."""
     refuse_without_result(run)
     build = _core.build_info()["build_id"]

@@ -20,7 +20,7 @@ from crawler2d.runs.branch import (
     branch_time,
     check_recording,
     read_push,
-    refuse_without_result,
+    refuse_unrepeatable,
     run_of_trial,
     simulate_branch,
     stop_time,
@@ -351,7 +351,7 @@ class Run(ShownRun):
         Raises
         ------
         ScenarioError
-            If the run did not tip over, or is a branch.
+            If the run did not tip over, is a branch, or is of another build.
 
         Examples
         --------
@@ -361,7 +361,7 @@ class Run(ShownRun):
         >>> fall.backwards, fall.prevented_by
         (True, ('centre of mass 36 mm further forward',))
         """
-        refuse_without_result(self)
+        refuse_unrepeatable(self)
         tip_over = find_tip_over(self.scenario, try_changes=True)
         if tip_over is None:
             raise ScenarioError("run", self, f"must have tipped over, not {self.outcome}")
