@@ -116,6 +116,14 @@ def test_an_audit_says_whether_the_file_states_the_floor(tmp_path: Path) -> None
         assert source.startswith(f"that of the floor, {told}, is taken as 0.5 to 1; gz combines")
 
 
+def test_a_robot_of_urdf_that_gazebo_keeps_in_place_gets_a_warning(tmp_path: Path) -> None:
+    text = (FILES / "cart.urdf").read_text(encoding="utf-8")
+    for static, count in (("true", 1), ("false", 0)):
+        block = f"<gazebo><static>{static}</static></gazebo></robot>"
+        found = read(tmp_path, text.replace("</robot>", block)).warnings
+        assert len([each for each in found if "it fixes the robot to the world" in each]) == count
+
+
 def test_friction_of_pairs_and_overrides_of_mujoco_gets_a_warning(tmp_path: Path) -> None:
     pytest.importorskip("mujoco")
     option = '<option o_friction="0.1 0.1 0 0 0"><flag override="enable"/></option>'

@@ -393,8 +393,8 @@ def warn_of_weightless(model: Element, warnings: list[ReadingWarning]) -> None:
     found = [
         each
         for each in model.within()
-        if (each.tag == "gravity" and each.text in ("0", "false") and _is_in(each, "link"))
-        or (each.tag == "turnGravityOff" and each.text in ("1", "true"))
+        if (each.tag == "gravity" and each.text.lower() in ("0", "false") and _is_in(each, "link"))
+        or (each.tag == "turnGravityOff" and each.text.lower() in ("1", "true"))
         or (each.tag == "body" and each.attributes.get("gravcomp", "0").strip(" 0.") != "")
     ]
     if found:

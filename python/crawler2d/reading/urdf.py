@@ -48,6 +48,7 @@ from crawler2d.reading.parts import (
 
 __all__ = ["read_urdf"]
 
+_FIXED = "is left out: it fixes the robot to the world, but the robot has to drive"
 _WORLD = "world"  # A joint from an empty link of this name fixes a robot to the world.
 
 # The interface of ros_control, with or without its package, and that of ros2_control.
@@ -91,6 +92,12 @@ def read_urdf(root: Element, meshes: Meshes, *, leave_out: bool, is_bullet: bool
     )
     warnings = meshes.warnings
     warn_of_weightless(root, warnings)
+    warnings += [
+        (each.at, each.text, _FIXED)
+        for block in root.all("gazebo")
+        for each in block.all("static")
+        if each.text.lower() in ("1", "true")
+    ]
     ends, ground = [], ""
     for element in root.all("joint"):
         parent, child = (element.needed(end).attribute("link") for end in ("parent", "child"))
@@ -99,8 +106,7 @@ def read_urdf(root: Element, meshes: Meshes, *, leave_out: bool, is_bullet: bool
         elif parent == _WORLD and parent in elements and not elements[parent].children:
             ground = parent
             if element.attribute("type") != "floating":
-                reason = "is left out: it fixes the robot to the world, but the robot has to drive"
-                warnings.append((element.at, f"{parent} to {child}", reason))
+                warnings.append((element.at, f"{parent} to {child}", _FIXED))
         else:
             ends.append((element, element.attribute("name"), parent, child))
     plugins = tuple(
