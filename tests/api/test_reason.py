@@ -92,7 +92,7 @@ def test_a_robot_that_shall_stand_does_not_drive_on() -> None:
     parked = c2d.simulate(ROBOT, step, drive=c2d.Drive(speed=0.0), duration=0.1, record="summary")
     assert parked.reason == "timed out after 0.10 s, with a commanded speed of 0"
     at_once = c2d.simulate(ROBOT, step, duration=0.0)
-    assert at_once.reason == "timed out after 0.00 s, before its first stop window was over"
+    assert at_once.reason == "timed out after 0.00 s, before a whole stop window was over"
     halted = c2d.Drive(speed=0.3, schedule=((1.2, 0.0), (9.0, 0.3)))
     for record in ("full", "summary"):
         run = c2d.simulate(ROBOT, step, drive=halted, duration=1.5, record=record)
@@ -105,7 +105,7 @@ def test_the_meaning_of_timing_out_includes_robots_that_shall_stand() -> None:
 
 def test_progress_before_the_first_stop_window_is_over_is_not_known() -> None:
     pushing = c2d.simulate(ROBOT, c2d.terrains.step(0.3), duration=0.5)
-    assert pushing.reason == "timed out after 0.50 s, before its first stop window was over"
+    assert pushing.reason == "timed out after 0.50 s, before a whole stop window was over"
 
 
 def test_a_title_says_when_the_goal_was_reached_as_the_metric_does() -> None:

@@ -146,7 +146,7 @@ class Record:
         if commanded[-1] == 0.0:
             return "with a commanded speed of 0"
         if progress == 1.0:
-            return "before its first stop window was over"
+            return "before a whole stop window was over"
         return f"still driving at {100 * progress:.0f} % of the commanded speed"
 
     @property

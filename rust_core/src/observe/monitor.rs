@@ -277,7 +277,7 @@ impl Monitor {
         self.observed.progress.stop_since
     }
 
-    /// Share of the commanded distance covered in the last stop window; 1 before the first window is over.
+    /// Share of the commanded distance covered in the last stop window; 1 before the first window in a direction is over.
     pub(crate) fn progress(&self) -> f64 {
         self.observed.progress.share
     }

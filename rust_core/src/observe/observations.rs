@@ -133,7 +133,7 @@ pub(super) struct Progress {
     pub stops: Vec<Event>,
     /// [s] Duration of the longest stop that ended because the robot moved on, 0 if there was none.
     pub time_to_free: f64,
-    /// Share of the commanded distance covered in the last window; 1 before the first window is over.
+    /// Share of the commanded distance covered in the last window; 1 before the first window in a direction is over.
     pub share: f64,
 }
 
@@ -206,6 +206,7 @@ impl Progress {
             self.direction = direction;
             self.history.clear();
             (self.best_advance, self.best_angle) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
+            self.share = 1.0;
         }
         self.best_advance = self.best_advance.max(direction * now.position.x);
         self.best_angle = self.best_angle.max(direction * now.chassis_angle * length);

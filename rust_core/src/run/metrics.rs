@@ -56,7 +56,7 @@ metrics! {
     drive_work ["J"] "work of the motors of the tracks, without those of the flippers"
     stopped_time ["s"] "time spent in stops"
     time_to_free ["s"] "longest stop from which the robot freed itself; 0 if there was none"
-    progress ["1"] "share of the commanded distance covered in the last stop window; 1 until the first window is over"
+    progress ["1"] "share of the commanded distance covered in the last stop window; 1 until the first window in its direction is over"
     vertical_acceleration ["m/s^2"] "of the chassis frame, averaged over 10 ms; root mean square, 0 in a run that is shorter"
     angular_velocity ["rad/s"] "rate of change of the chassis angle, root mean square of its values every 10 ms, 0 in a run that is shorter"
     intrusion_depth ["m"] "greatest depth, below the circumscribed circles, of the most loaded intrusion that lasts to the end; 0 if there is none"

@@ -121,6 +121,18 @@ fn the_share_is_that_of_the_commanded_way_in_either_direction() {
 }
 
 #[test]
+fn a_share_ends_with_its_command() {
+    for command in [0.0, -1.0] {
+        let mut way = Way::new(1.0);
+        way.goes(0.0, 5.0, 2 * SPAN);
+        assert!(way.progress.share < 1.0);
+        (way.command, way.set_point) = (command, command);
+        way.stands(5.0, SPAN);
+        assert_eq!(way.progress.share, 1.0, "no whole window yet");
+    }
+}
+
+#[test]
 fn way_that_is_made_twice_counts_once() {
     let mut way = Way::new(1.0);
     way.goes(0.0, 10.0, 10);
