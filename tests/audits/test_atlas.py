@@ -73,7 +73,7 @@ def test_the_page_has_every_model_with_its_licence_and_why_it_was_not_read(
 ) -> None:
     page = tmp_path / "out" / "atlas.html"
     assert main(["atlas", str(forest), "--html", str(page), "--samples", "1"]) == 0
-    assert "Of 3 model files 1 were read" in capsys.readouterr().out
+    assert "1 of 3 model files were read" in capsys.readouterr().out
     text = page.read_text(encoding="utf-8")
     for part in ("cart/cart.urdf", "LICENSE: MIT License", "package.xml: BSD", "well-formed XML"):
         assert part in text

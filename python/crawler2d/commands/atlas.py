@@ -232,8 +232,8 @@ def _conclusion(entries: Sequence[Entry]) -> str:
         e for e in seizing if e.audit is not None and any(r.confirmed for r in e.audit.repairs)
     ]
     return (
-        f"Of {len(entries)} model files {len(read)} were read; {len(seizing)} robots seize where a"
-        f" belt clears; a repair was confirmed for {len(repaired)} of them."
+        f"{len(read)} of {len(entries)} model files were read. Robots that seize where a belt clears:"
+        f" {len(seizing)}, with a confirmed repair: {len(repaired)}."
     )
 
 
