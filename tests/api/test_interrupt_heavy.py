@@ -40,8 +40,8 @@ gears = c2d.Scenario(
 )
 
 thrown = c2d.Simulation(gears)
-thrown.command(push=-1e6)
-thrown.advance(0.0125)  # it is at the edge, with thousands of contacts from now on
+thrown.command(push=-8e6)
+thrown.advance(0.0035)  # at the edge: steps with thousands of contacts follow, which take seconds
 snapshot = thrown.snapshot()
 
 def throw():
