@@ -231,7 +231,8 @@ def subtrees(tree: Tree) -> dict[str, list[str]]:
 
 def is_parallel(first: Array, second: Array) -> bool:
     """Whether two directions are parallel or opposite, within a tolerance."""
-    return bool(np.linalg.norm(np.cross(first, second)) <= math.sin(PARALLEL))
+    (a, b, c), (x, y, z) = first.tolist(), second.tolist()
+    return math.hypot(b * z - c * y, c * x - a * z, a * y - b * x) <= math.sin(PARALLEL)
 
 
 def radius_about(shape: Shape, point: Array, axis: Array) -> float | None:
