@@ -36,11 +36,15 @@ class Looks:
 
     @staticmethod
     def of(estimate: Callable[[int, int], Interval], most: int = MOST) -> "Looks":
-        """Estimate from up to a number of runs; more successes than runs give 0 to 1."""
+        """Estimate from up to a number of runs; more successes than runs give 0 to 1.
+
+        A failure rate is estimated as a success rate is, so half of these mirror the others.
+        """
         low, high = np.zeros((most + 1, most + 1)), np.ones((most + 1, most + 1))
         for n in range(1, most + 1):
-            for k in range(n + 1):
+            for k in range(n // 2 + 1):
                 _, low[n, k], high[n, k] = estimate(k, n)
+                low[n, n - k], high[n, n - k] = 1.0 - high[n, k], 1.0 - low[n, k]
         return Looks(low, high)
 
     def misses(self, rate: float) -> Flags:
@@ -77,10 +81,11 @@ def endings(rate: float, ends: Flags) -> NDArray[np.float64]:
     left = np.zeros(ends.shape[1])
     left[0] = 1.0
     for n in range(1, len(ends)):
-        left[1:] = left[1:] * (1.0 - rate) + left[:-1] * rate
-        left[0] *= 1.0 - rate
-        found[n, ends[n]] = left[ends[n]]
-        left[ends[n]] = 0.0
+        now, over = left[: n + 1], ends[n, : n + 1]  # no more successes than runs
+        now[1:] = now[1:] * (1.0 - rate) + now[:-1] * rate
+        now[0] *= 1.0 - rate
+        found[n, : n + 1] = np.where(over, now, 0.0)
+        now[over] = 0.0
     return found
 
 

@@ -90,6 +90,14 @@ def test_intervals_ever_miss_a_rate_in_fewer_than_5_percent_up_to_500_runs() -> 
     assert min(found[2:]) > 0.015
 
 
+@pytest.mark.parametrize("estimate", [sequential, wilson])
+def test_the_interval_of_failures_mirrors_that_of_successes(estimate: Any) -> None:
+    for n in (1, 2, 9, 40, 200, 499):
+        for k in range(n + 1):
+            rate, low, high = estimate(k, n)
+            assert estimate(n - k, n) == pytest.approx((1.0 - rate, 1.0 - high, 1.0 - low))
+
+
 def test_rates_of_0_and_1_are_never_missed() -> None:
     for rate in (0.0, 1.0):
         assert looks.ever_missed(looks.sequentials(), rate) == 0.0
