@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import shutil
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -55,9 +56,10 @@ class Job:
         """Draw figures as NAME.png, also in other folders; print a note without matplotlib."""
         try:
             for name, figure in figures.items():
-                drawn = figure()
-                for folder in (self.out, *also):
-                    drawn.savefig(folder / f"{name}.png", dpi=100)
+                picture = self.out / f"{name}.png"
+                figure().savefig(picture, dpi=100)
+                for folder in also:
+                    shutil.copy(picture, folder)
         except ImportError as missing:
             print(f"no picture: {missing}", file=sys.stderr)
 
