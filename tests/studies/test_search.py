@@ -15,7 +15,7 @@ from crawler2d.sweeps.store import stored_rows
 from crawler2d.variation.draws import Variation
 from tests.shared import ROBOT, refused
 
-BASE = c2d.Scenario(ROBOT, c2d.terrains.step(0.05))
+BASE = c2d.Scenario(ROBOT, c2d.terrains.step(0.05), solver=c2d.Solver(accuracy=1e-5))
 SPACE: Any = {
     "7 small": c2d.LineOfWheels(7, wheel_radius=0.032),
     "2 large": c2d.LineOfWheels(2),
