@@ -45,7 +45,7 @@ SIZES = {
 @pytest.fixture(
     scope="module",
     params=[
-        pytest.param(80, id="an eightieth"),
+        pytest.param(120, id="a few"),
         pytest.param(1, id="all", marks=pytest.mark.soak),
     ],
 )

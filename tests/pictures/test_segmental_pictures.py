@@ -67,7 +67,7 @@ def test_contacts_lie_on_the_shoes_that_are_drawn(chain: c2d.Run) -> None:
     bodies = chain.bodies
     pieces = np.flatnonzero((bodies["shoe"] >= 0) & (bodies["lane"] == near)).tolist()
     distances = []
-    for sample in range(20, chain.time.size, 8):
+    for sample in range(20, chain.time.size, 12):
         _, ax = plt.subplots()
         chain.plot(ax, time=chain.time[sample])
         outlines = drawn_shoes(ax)
