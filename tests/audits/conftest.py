@@ -33,7 +33,7 @@ def of_file(tmp_path_factory: pytest.TempPathFactory) -> c2d.Audit:
     path = tmp_path_factory.mktemp("cart") / "cart.urdf"
     path.write_text(seizing_file(), encoding="utf-8")
     steps = {**STEP, "step of 30 mm": c2d.terrains.step(0.03)}
-    return c2d.audit(path, steps, samples=12, repeats=1, repair=False, seed=3, **QUIET)
+    return c2d.audit(path, steps, samples=9, repeats=1, repair=False, seed=3, **QUIET)
 
 
 @pytest.fixture

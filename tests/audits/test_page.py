@@ -326,19 +326,19 @@ def test_a_diff_is_shown_with_its_repair(found: c2d.Audit, page: Page) -> None:
 def test_how_it_was_made_names_runs_seed_and_command(of_file: c2d.Audit, file_page: Page) -> None:
     rows = {row[0]: row[1] for row in file_page.rows("how it was made")}
     made = int((of_file.table["outcome"] != "").sum())
-    assert made < 48
+    assert made < 36
     said = rows["runs behind the verdicts"]
-    assert said.startswith(f"{made}: at most 12 samples of the robot, 1 run each")
+    assert said.startswith(f"{made}: at most 9 samples of the robot, 1 run each")
     assert rows["seed of the draws"] == "3"
     assert c2d.__version__ in rows["crawler2d"]
     *_, (_, again) = file_page.all("pre")
     # Custom obstacles are not an option of the command.
     assert of_file.reading is not None
     path = of_file.reading.path
-    assert again.startswith(f"crawler2d.audit({str(path)!r}, obstacles=..., samples=12")
+    assert again.startswith(f"crawler2d.audit({str(path)!r}, obstacles=..., samples=9")
     changed = dataclasses.replace(of_file, call=dataclasses.replace(of_file.call, own=()))
     *_, (_, again) = Page(changed.to_html()).all("pre")
-    assert again.startswith(f"crawler2d audit {path} --samples 12 --repeats 1 --seed 3")
+    assert again.startswith(f"crawler2d audit {path} --samples 9 --repeats 1 --seed 3")
 
 
 # Replays
