@@ -64,9 +64,11 @@ class Span:
 
     def within(self) -> Iterator[Span]:
         """Yield itself and everything in it, in the order of the text."""
-        yield self
-        for child in self.children:
-            yield from child.within()
+        waiting = [self]
+        while waiting:
+            span = waiting.pop()
+            yield span
+            waiting.extend(reversed(span.children))
 
     def all(self, *tags: str) -> list[Span]:
         """Return the children with these names."""
