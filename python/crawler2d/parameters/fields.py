@@ -250,6 +250,8 @@ def to_dict(parameters: Parameters) -> dict[str, Any]:
 
 
 def _json_value(value: Any) -> Any:
+    if type(value) is float and abs(value) <= sys.float_info.max:  # as nearly all are
+        return value
     if isinstance(value, Parameters):
         return to_dict(value)
     if isinstance(value, tuple):
