@@ -117,7 +117,7 @@ def test_a_film_ends_with_the_outcome_and_begins_without(seized: c2d.Run) -> Non
     told = []
     for number in range(3):
         film.show(number)
-        film.figure.canvas.draw()
+        film.figure.draw_without_rendering()
         told.append(ax.get_title(loc="left"))
     assert told == [
         "engineer, line, step: 0.00 s (2 x real time)",
