@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
+from functools import cache
 from itertools import product
 from typing import NamedTuple
 
@@ -123,6 +124,7 @@ def _accuracies() -> Iterator[Point]:
             yield Point("accuracy", panel, "line of 3 gear", accuracy, scenario)
 
 
+@cache
 def flat(count: int, jitter: float, seed: int = 0) -> Lane:
     """Cut flat ground into pieces of one length, with random heights of their ends.
 
@@ -139,6 +141,7 @@ def flat(count: int, jitter: float, seed: int = 0) -> Lane:
     return _ground(x, np.zeros(count + 1), jitter, seed)
 
 
+@cache
 def blocks(count: int, seed: int = 0) -> Lane:
     """Cut the tops of blocks of random heights into pieces of one length.
 

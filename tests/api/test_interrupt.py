@@ -77,16 +77,16 @@ import time
 import numpy as np
 from crawler2d.envs import FlipperVectorEnv
 
-many = FlipperVectorEnv(4096)
+many = FlipperVectorEnv(2048)
 many.reset(seed=0)
 print("ready", flush=True)
 try:
     while True:
-        many.step(np.zeros((4096, 3)))
+        many.step(np.zeros((2048, 3)))
 except KeyboardInterrupt:
     now = time.monotonic()
     many.reset()
-    many.step(np.zeros((4096, 3)))
+    many.step(np.zeros((2048, 3)))
     print(now, (many.state.time == 0.05).all(), flush=True)
 """
 
@@ -182,7 +182,7 @@ def test_a_simulation_answers_ctrl_c_and_can_go_on(say: Say) -> None:
 
 def test_environments_answer_ctrl_c_and_can_begin_anew(say: Say) -> None:
     latency, said = interrupted(POLICY, 0.5)
-    say(f"4096 environments answered Ctrl-C after {1000 * latency:.0f} ms")
+    say(f"2048 environments answered Ctrl-C after {1000 * latency:.0f} ms")
     assert latency < SLACK
     assert said == ["True"]
 
