@@ -95,3 +95,8 @@ def distance(point: Any, outline: Any) -> float:
     share = np.sum((point - start) * way, axis=1) / np.sum(way * way, axis=1)
     feet = start + np.clip(share, 0.0, 1.0)[:, None] * way
     return float(np.hypot(*(feet - point).T).min())
+
+
+def lay_out(ax: Any) -> None:
+    """Place everything in the figure, as drawing does, but paint nothing."""
+    ax.figure.draw_without_rendering()

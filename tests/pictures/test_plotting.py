@@ -9,7 +9,7 @@ from matplotlib.text import Text
 
 import crawler2d as c2d
 from crawler2d.parameters.scenario import Scenario
-from tests.pictures.reading import distance
+from tests.pictures.reading import distance, lay_out
 from tests.shared import GEAR, PLACEMENTS, POINTS, ROBOT, refused
 
 WHEELS = ROBOT.with_track(c2d.LineOfWheels(4, wheel_radius=0.0608))
@@ -26,12 +26,12 @@ def test_a_plot_is_a_side_view_and_the_history_three_strips(run: c2d.Run) -> Non
     assert force.get_xlabel() == "time [s]"
     assert angle.get_title(loc="left") == run.title
     for ax in (side, angle):
-        ax.figure.draw_without_rendering()
+        lay_out(ax)
 
 
 def test_the_legend_of_the_history_covers_no_line(run: c2d.Run) -> None:
     _, speed, _ = run.plot_history()
-    speed.figure.draw_without_rendering()
+    lay_out(speed)
     legend: Any = speed.get_legend()
     assert legend.get_window_extent().y0 >= speed.get_window_extent().y1
     assert [text.get_text() for text in legend.get_texts()][:3] == [
@@ -55,7 +55,7 @@ def test_the_side_view_shows_the_whole_path(run: c2d.Run) -> None:
 def test_a_name_is_no_formula(scenario: Scenario, name: str) -> None:
     run = c2d.simulate(scenario.replace({"robot.name": name, "duration": 0.1}))
     side = run.plot()
-    side.figure.draw_without_rendering()
+    lay_out(side)
     title = next(text for text in side.findobj(Text) if text.get_text().startswith(name))
     assert not title.get_parse_math()
 
@@ -108,7 +108,7 @@ def test_a_plot_without_a_history_leaves_no_open_figure() -> None:
 )
 def test_every_kind_of_robot_and_ground_is_drawn(track: Any, terrain: Any) -> None:
     side = c2d.simulate(ROBOT.with_track(track), terrain).plot()
-    side.figure.draw_without_rendering()
+    lay_out(side)
 
 
 def test_gears_are_drawn_turned_as_far_as_they_have_run() -> None:

@@ -12,6 +12,7 @@ from matplotlib.text import Text
 import crawler2d as c2d
 from crawler2d.drawings.scene import close_line, place, relative
 from crawler2d.parameters.track import Track
+from tests.pictures.reading import lay_out
 from tests.shared import GEAR, ROBOT, TRAPEZOID, VARIANTS, refused
 
 ROBOTS = {
@@ -51,7 +52,7 @@ def lines(ax: Any) -> list[Any]:
 @pytest.mark.parametrize("robot", ROBOTS.values(), ids=ROBOTS)
 def test_every_robot_is_drawn_and_no_label_lies_over_another(robot: c2d.Robot) -> None:
     ax = robot.plot()
-    ax.figure.draw_without_rendering()
+    lay_out(ax)
     assert ax.get_title(loc="left") == robot.description
     boxes = [(text.get_text(), text.get_window_extent()) for text in words(ax)]
     assert [(a, b) for (a, one), (b, two) in combinations(boxes, 2) if one.overlaps(two)] == []
@@ -64,7 +65,7 @@ def test_every_robot_is_drawn_and_no_label_lies_over_another(robot: c2d.Robot) -
 @pytest.mark.parametrize("scenario", VARIANTS.values(), ids=VARIANTS)
 def test_every_ground_is_drawn_with_the_robot_before_it_and_the_goal(scenario: Any) -> None:
     ax = scenario.plot()
-    ax.figure.draw_without_rendering()
+    lay_out(ax)
     run = c2d.simulate(scenario, duration=0.0)
     x, y = run.position[0]
     (left, right), (bottom, top) = ax.get_xlim(), ax.get_ylim()
@@ -159,7 +160,7 @@ def test_the_height_of_an_obstacle_can_be_read(terrain: Any, told: str | None) -
 def test_the_height_at_the_right_end_of_a_view_is_inside_of_it(level: float) -> None:
     slope = c2d.terrains.from_points([(-2.0, 0.0), (0.0, 0.0), (3.0, level)], goal=0.5)
     ax = c2d.Scenario(ROBOT, slope).plot()
-    ax.figure.draw_without_rendering()
+    lay_out(ax)
     (label,) = (each for each in ax.texts if each.get_text().endswith(" m"))
     assert label.get_window_extent().x1 < ax.get_window_extent().x1
 
@@ -200,5 +201,5 @@ def test_a_title_says_what_the_tracks_are() -> None:
 def test_a_name_is_no_formula_over_a_robot(name: str) -> None:
     robot = dataclasses.replace(ROBOT, name=name)
     for ax in (robot.plot(), c2d.Scenario(robot, c2d.terrains.flat()).plot()):
-        ax.figure.draw_without_rendering()
+        lay_out(ax)
         assert ax.get_title(loc="left").startswith(name)

@@ -11,6 +11,7 @@ import crawler2d as c2d
 from crawler2d.studies.campaign import Tally
 from crawler2d.studies.obstacles import _limits
 from crawler2d.sweeps.store import stored_rows
+from tests.pictures.reading import lay_out
 from tests.shared import ROBOT
 
 BASE = c2d.Scenario(ROBOT, c2d.terrains.step(0.05), solver=c2d.Solver(accuracy=1e-5))
@@ -158,7 +159,7 @@ def test_points_are_drawn_where_they_were_tried_and_intervals_beside_each_other(
 
     found = found_of(until=c2d.Until(threshold=0.5, max_runs=10))
     ax = found.plot()
-    ax.figure.draw_without_rendering()
+    lay_out(ax)
     tried = (1e3 * np.array(HEIGHTS)).tolist()
     assert [list(line.get_xdata()) for line in ax.get_lines()] == [tried] * len(MODELS)
     assert {*tried} <= {*ax.get_xticks(), *ax.get_xticks(minor=True)}
@@ -259,7 +260,7 @@ def test_labels_with_dollars_are_no_formulas_in_a_figure() -> None:
     ridden = c2d.studies.ride(BASE, repeats=1, **how)
     for found in (highest, crossed, ridden):
         ax = found.plot()
-        ax.figure.draw_without_rendering()
+        lay_out(ax)
         legend = ax.get_legend()
         keys = legend.get_texts() if legend is not None else []
         names = {text.get_text() for text in (*ax.get_yticklabels(), *ax.texts, *keys)}
