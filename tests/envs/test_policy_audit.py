@@ -59,9 +59,13 @@ def test_both_drivers_have_the_duration_of_their_obstacle() -> None:
         assert found.time.sel(obstacle=duration).values == pytest.approx(duration)
 
 
-def test_its_runs_are_those_of_the_environment() -> None:
-    found = audited(climbing)
-    cell = found.sel(driver="policy", model="skids", obstacle=0.2)
+@pytest.fixture(scope="module")
+def climbed() -> Any:
+    return audited(climbing)
+
+
+def test_its_runs_are_those_of_the_environment(climbed: Any) -> None:
+    cell = climbed.sel(driver="policy", model="skids", obstacle=0.2)
     for repeat in range(4):
         text = str(cell.scenario.isel(repeat=repeat).item())
         scenario = c2d.Scenario.from_json(text)
@@ -113,8 +117,8 @@ def test_where_nothing_is_gained_the_picture_shows_nothing_lost() -> None:
     assert len(plot_policy(data.assign(gain_low=data["gain_low"] + 1.0), None).patches) == 1
 
 
-def test_a_picture_of_parts_has_the_first_model_and_both_drivers() -> None:
-    found = audited(climbing)
+def test_a_picture_of_parts_has_the_first_model_and_both_drivers(climbed: Any) -> None:
+    found = climbed
     first, other = MODELS
     assert found.attrs["first_model"] == first
     assert f"gain on {first}" in found.sel(model=[first]).plot().get_title(loc="left")
@@ -171,7 +175,7 @@ def test_a_policy_of_the_wrong_shape_is_refused() -> None:
         audited(lambda seen: seen)
 
 
-def test_rows_of_episodes_that_have_ended_do_not_matter() -> None:
+def test_rows_of_episodes_that_have_ended_do_not_matter(climbed: Any) -> None:
     def undefined_when_over(seen: Any) -> Any:
         # The observation of a finished episode does not change any more.
         over = (seen == last[-1]).all(axis=1) if last else np.zeros(len(seen), bool)
@@ -179,5 +183,5 @@ def test_rows_of_episodes_that_have_ended_do_not_matter() -> None:
         return np.where(over[:, None], np.nan, climbing(seen))
 
     last: list[Any] = []
-    assert audited(undefined_when_over).rate.identical(audited(climbing).rate)
+    assert audited(undefined_when_over).rate.identical(climbed.rate)
     assert np.isnan(undefined_when_over(last[-1])).any()
