@@ -232,8 +232,8 @@ def _conclusion(entries: Sequence[Entry]) -> str:
         e for e in seizing if e.audit is not None and any(r.confirmed for r in e.audit.repairs)
     ]
     return (
-        f"{len(read)} of {len(entries)} model files were read. Robots that seize where a belt clears:"
-        f" {len(seizing)}, with a confirmed repair: {len(repaired)}."
+        f"{len(read)} of {len(entries)} model files were read. Robots that seize where a belt"
+        f" clears: {len(seizing)}, with a confirmed repair: {len(repaired)}."
     )
 
 
