@@ -6,6 +6,7 @@ radians. None means not given.
 
 from __future__ import annotations
 
+import contextlib
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -442,9 +443,22 @@ class Plugin:
     settings: tuple[tuple[str, str, Where], ...]
     at: Where = NOWHERE
 
+    def is_one_of(self, *kinds: str) -> bool:
+        """Whether its name or its file's contains one of these, without capitals and hyphens."""
+        names = f"{self.name} {self.filename}".lower().replace("-", "")
+        return any(kind in names for kind in kinds)
+
     def values(self, *paths: str) -> list[tuple[str, Where]]:
         """Return text and line of every setting at one of these paths."""
         return [(text, where) for path, text, where in self.settings if path in paths]
+
+    def numbers(self, *paths: str) -> list[tuple[float, Where]]:
+        """Return value and line of those of them that are numbers."""
+        found = []
+        for text, where in self.values(*paths):
+            with contextlib.suppress(ValueError):
+                found.append((float(text), where))
+        return found
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)

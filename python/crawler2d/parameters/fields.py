@@ -250,17 +250,17 @@ def to_dict(parameters: Parameters) -> dict[str, Any]:
 
 
 def _json_value(value: Any) -> Any:
-    if type(value) is float and abs(value) <= sys.float_info.max:  # as nearly all are
-        return value
+    if isinstance(value, (int, float)):  # as nearly all are
+        if abs(value) <= sys.float_info.max:
+            return value
+        if value != value:  # noqa: PLR0124 - the definition of NaN
+            return "NaN"
+        return "Infinity" if value > 0 else "-Infinity"
     if isinstance(value, Parameters):
         return to_dict(value)
     if isinstance(value, tuple):
         return [_json_value(each) for each in value]
-    if not isinstance(value, (int, float)) or abs(value) <= sys.float_info.max:
-        return value
-    if value != value:  # noqa: PLR0124 - the definition of NaN
-        return "NaN"
-    return "Infinity" if value > 0 else "-Infinity"
+    return value
 
 
 def from_dict(cls: type[P], values: dict[str, Any]) -> P:

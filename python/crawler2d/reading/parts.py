@@ -206,7 +206,7 @@ def plugin_of(plugin: Element) -> Plugin:
 
 def is_drive(plugin: Plugin) -> bool:
     """Whether a plugin is a differential or skid-steer drive."""
-    return any(kind in f"{plugin.name} {plugin.filename}".lower() for kind in ("diff", "skid"))
+    return plugin.is_one_of("diff", "skid")
 
 
 def driven_on(plugin: Plugin, side: str) -> list[tuple[str, Where]]:
@@ -228,10 +228,9 @@ def wheel_torques(plugins: tuple[Plugin, ...]) -> dict[str, tuple[float, Where]]
     """[N m] Return the torques that differential drives of Gazebo Classic give to joints."""
     torques: dict[str, tuple[float, Where]] = {}
     for plugin in plugins:
-        for text, where in plugin.values("max_wheel_torque", "wheelTorque", "torque"):
-            with contextlib.suppress(ValueError):
-                if 0.0 < (torque := float(text)) < math.inf:
-                    torques |= dict.fromkeys(driven_by((plugin,)), (torque, where))
+        for torque, where in plugin.numbers("max_wheel_torque", "wheelTorque", "torque"):
+            if 0.0 < torque < math.inf:
+                torques |= dict.fromkeys(driven_by((plugin,)), (torque, where))
     return torques
 
 
@@ -245,7 +244,7 @@ def moved_links(tree: Tree) -> dict[str, Where]:
 def named_tracks(plugins: Iterable[Plugin]) -> Iterator[tuple[str, Where]]:
     """Yield the names of tracks in plugins, with lines; some may not be links."""
     for plugin in plugins:
-        if "track" in f"{plugin.name} {plugin.filename}".lower():
+        if plugin.is_one_of("track"):
             for path, text, where in plugin.settings:
                 if path.rpartition("/")[2] in _TRACKS:
                     yield text, where

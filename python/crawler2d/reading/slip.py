@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 from collections.abc import Iterator, Sequence
 
 from crawler2d.model_tree import Where
@@ -12,9 +11,6 @@ from crawler2d.reading.running_gear import SideView
 from crawler2d.reading.wheels import Runner
 
 __all__ = ["warn_of_slip"]
-
-_PLUGIN = "wheelslip"
-"""Name of Gazebo's plugin, without its separators."""
 
 
 def warn_of_slip(log: ReadLog, runners: Sequence[Runner], view: SideView) -> None:
@@ -37,8 +33,6 @@ def _of_shapes(runners: Sequence[Runner], view: SideView) -> Iterator[tuple[floa
 
 def _of_plugins(log: ReadLog) -> Iterator[tuple[float, Where]]:
     for plugin in log.tree.plugins:
-        if _PLUGIN in f"{plugin.name} {plugin.filename}".lower().replace("-", ""):
-            for text, where in plugin.values("wheel/slip_compliance_longitudinal"):
-                with contextlib.suppress(ValueError):
-                    if (slip := float(text)) > 0.0:
-                        yield slip, where
+        if plugin.is_one_of("wheelslip"):
+            slips = plugin.numbers("wheel/slip_compliance_longitudinal")
+            yield from ((slip, where) for slip, where in slips if slip > 0.0)

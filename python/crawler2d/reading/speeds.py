@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import contextlib
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
-from crawler2d.model_tree import Plugin, Tree, Where
+from crawler2d.model_tree import Tree, Where
 from crawler2d.reading.log import ReadLog, estimate, lines
 from crawler2d.reading.parts import is_drive
 from crawler2d.reading.running_gear import Pair
@@ -30,9 +29,6 @@ FASTEST = 100.0
 
 ALIKE = 0.01
 """[-] Tolerated difference of rotors, forces or sides, relative to the largest, as files round."""
-
-_CONTROLLER = "trackcontroller"
-"""Name of Gazebo's plugin that moves one track, without its separators."""
 
 _SPEEDS = ("max_velocity", "max_linear_velocity", "linear_velocity/max_velocity")
 """Settings of Gazebo's TrackController, DiffDrive and TrackedVehicle."""
@@ -83,13 +79,9 @@ def _in_range(limits: Sequence[tuple[float, Where]]) -> list[tuple[float, Where]
 
 def warn_of_controllers(log: ReadLog) -> None:
     """Warn if track controllers have unlike limits, as all tracks have one speed."""
-    controllers = [
-        plugin
-        for plugin in log.tree.plugins
-        if _CONTROLLER in f"{plugin.name} {plugin.filename}".lower().replace("-", "")
-    ]
+    controllers = [each for each in log.tree.plugins if each.is_one_of("trackcontroller")]
     for name, most in _OF_TRACKS.items():
-        stated = [_numbers((plugin,), (name,)) for plugin in controllers]
+        stated = [plugin.numbers(name) for plugin in controllers]
         numbers = [abs(own[0][0]) if own else math.inf for own in stated]
         limits = {each if 0.0 < each <= most else math.inf for each in numbers}
         if limits and not math.isclose(min(limits), max(limits), rel_tol=ALIKE):
@@ -135,22 +127,12 @@ def _rate(tree: Tree, which: str, usual: float) -> tuple[float, str]:
 
 def _of_plugins(tree: Tree, names: Sequence[str]) -> list[tuple[float, Where]]:
     """List the numbers that plugins of drives state under some names."""
-    driving = (
-        plugin
+    return [
+        stated
         for plugin in tree.plugins
-        if is_drive(plugin) or "track" in f"{plugin.name} {plugin.filename}".lower()
-    )
-    return _numbers(driving, names)
-
-
-def _numbers(plugins: Iterable[Plugin], names: Sequence[str]) -> list[tuple[float, Where]]:
-    """List the numbers that plugins state under some names."""
-    found = []
-    for plugin in plugins:
-        for text, where in plugin.values(*names):
-            with contextlib.suppress(ValueError):
-                found.append((float(text), where))
-    return found
+        if is_drive(plugin) or plugin.is_one_of("track")
+        for stated in plugin.numbers(*names)
+    ]
 
 
 def _least(limits: Sequence[tuple[float, Where]]) -> tuple[float, str]:
