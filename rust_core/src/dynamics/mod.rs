@@ -223,7 +223,7 @@ impl Dynamics {
         self.place_flippers(state, half);
         self.set_free_velocities(state, half);
         self.start_chains(state, h);
-        self.close_gaps(h);
+        self.close_gaps(h, strikes);
         self.guess(half);
         self.drive_to_middle(state, set_point, half);
         // Steps of a given length, those of chains and those that end with an impact are not cut.
@@ -267,12 +267,13 @@ impl Dynamics {
         self.report(contacts, h);
     }
 
-    /// Sets the contacts up for the solve before a motion of `h` [s], which finds the impulses of half the step.
-    fn close_gaps(&mut self, h: f64) {
+    /// Sets the contacts up for the solve before a motion of `h` [s], in which something may strike the ground; it finds the
+    /// impulses of half the step.
+    fn close_gaps(&mut self, h: f64, strikes: bool) {
         let (soft, most) = (self.softness(h), self.solver.max_push_speed);
         for (touch, solved) in self.touches.iter().zip(&mut self.problem.contacts) {
             if self.chains.is_empty() {
-                touch.close(solved, h, soft, most);
+                touch.close(solved, (h, strikes), soft, most);
             } else {
                 touch.close_softly(solved, (h, 0.5 * h), soft, most);
             }

@@ -198,9 +198,15 @@ fn a_soft_contact_closes_its_gap_or_pushes_out_of_the_ground() {
         };
         let [mut softly, mut solved] = [crate::solver::Contact::new([Row::default(); 2]); 2];
         touch.close_softly(&mut softly, (h, h), soft, most);
-        touch.close(&mut solved, h, soft, most);
-        assert_relative_eq!(softly.bias, bias);
-        assert_relative_eq!(solved.bias, bias);
+        for strikes in [false, true] {
+            touch.close(&mut solved, (h, strikes), soft, most);
+            assert_relative_eq!(softly.bias, bias);
+            assert_relative_eq!(solved.bias, bias);
+            // An impact must not compress what is open yet.
+            let is_rigid = strikes && gap > 0.0;
+            let compliance = if is_rigid { 0.0 } else { 2.0 * soft.compliance };
+            assert_relative_eq!(solved.compliance, compliance);
+        }
     }
 }
 

@@ -172,16 +172,28 @@ impl Touch {
         };
     }
 
-    /// Sets a contact up for a motion of `h` [s]: an open gap may just close, and a penetration is pushed out softly.
-    pub(super) fn close(&self, solved: &mut Contact, h: f64, soft: Softness, max_push_speed: f64) {
+    /// Sets a contact up for a motion of `h` [s] on a spring: an open gap may close, and a penetration is pushed out. A gap
+    /// that is open where something `strikes` may just close: the impulse of an impact would compress the spring.
+    pub(super) fn close(
+        &self,
+        solved: &mut Contact,
+        (h, strikes): (f64, bool),
+        soft: Softness,
+        max_push_speed: f64,
+    ) {
+        let is_open = self.gap > 0.0;
         solved.bears = true;
-        if self.gap > 0.0 {
-            (solved.bias, solved.compliance) = (self.gap / h, 0.0);
+        solved.bias = if is_open {
+            self.gap / h
         } else {
-            solved.bias = (soft.push_rate * self.gap).max(-max_push_speed);
-            // The solve finds the impulse of half the step, and the spring acts for all of it.
-            solved.compliance = 2.0 * soft.compliance;
-        }
+            (soft.push_rate * self.gap).max(-max_push_speed)
+        };
+        // The solve finds the impulse of half the step, and the spring acts for all of it.
+        solved.compliance = if is_open && strikes {
+            0.0
+        } else {
+            2.0 * soft.compliance
+        };
     }
 
     /// Whether it is on the ground, not on the robot itself.
