@@ -50,13 +50,13 @@ class Climb(Parameters, kind="climb", path="drive.gait"):
     """Reach up with the flippers to meet an obstacle, then sweep down to lift the chassis.
 
     The gait uses only what an operator could see from a distance: the angle of the chassis, and
-    whether a flipper touches something beyond its root. The front flippers stay at `reach_angle`
-    until they touch something, then sweep down to `sweep_angle`. As soon as the chassis is raised
-    by more than `level_angle`, the rear ones push down to `push_angle` and lift it from behind. All
-    return when the chassis is level again and nothing touches the rear ones, or when the nose has
-    pointed down by more than `level_angle` for a second: the front ones to `reach_angle`, the rear
-    ones to their starting angle. The tracks keep the speed of the `Drive`; the gait never reverses
-    them.
+    whether a flipper touches something beyond its root. It looks every 10 ms, and what a flipper
+    has touched since the last look counts. The front flippers stay at `reach_angle` until they
+    touch something, then sweep down to `sweep_angle`. As soon as the chassis is raised by more than
+    `level_angle`, the rear ones push down to `push_angle` and lift it from behind. All return when
+    the chassis is level again and nothing touches the rear ones, or when the nose has pointed down
+    by more than `level_angle` for a second: the front ones to `reach_angle`, the rear ones to their
+    starting angle. The tracks keep the speed of the `Drive`; the gait never reverses them.
 
     Parameters
     ----------

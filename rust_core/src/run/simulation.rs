@@ -427,7 +427,7 @@ impl Simulation {
         }
     }
 
-    /// [s] When a command changes next, or the set-point reaches its command; infinite if neither does.
+    /// [s] When a command may change next, or the set-point reaches its command; infinite if neither does.
     pub(super) fn next_change(&self) -> f64 {
         let drive = &self.scenario.drive;
         let of_flippers = match &drive.gait {
@@ -442,8 +442,10 @@ impl Simulation {
         let next = entries.into_iter().flatten().filter_map(next);
         let limits = &self.scenario.robot.drivetrain;
         let ramp = ramp_time(self.set_point, self.commands.speed, limits);
-        let risen = Some(self.commands.push.end()).filter(|end| *end > self.time);
-        next.chain(risen).fold(self.time + ramp, f64::min)
+        let Commands { push, driver, .. } = &self.commands;
+        let ends = [push.end(), driver.next_look()].into_iter();
+        let ends = ends.filter(|end| *end > self.time);
+        next.chain(ends).fold(self.time + ramp, f64::min)
     }
 
     /// [m/s] The set-point of the drivetrain after a time [s].

@@ -231,6 +231,26 @@ fn arms_at_the_rear_climb_what_those_at_the_front_cannot() {
     assert_eq!(outcome(Ends::Both, 0.25), Outcome::Cleared);
 }
 
+/// In front of this step contacts of the arms open by 0.1 um for an instant. A driver who took that for the loss of contact
+/// raised the arms, in 3 of these 10 runs at 0.3 um and in none at 0.03 um.
+#[test]
+fn a_climb_does_not_depend_on_contacts_that_open_for_an_instant() {
+    let mut scenario = with_flippers(Ends::Front, line(5));
+    scenario.robot.center_of_mass = [0.0276, 0.0297];
+    scenario.robot.moment_of_inertia = 0.601;
+    flippers(&mut scenario).angle = 0.8;
+    scenario.terrain = step(0.1487, 0.91);
+    (scenario.drive.speed, scenario.drive.gait) = (0.37, Some(climb()));
+    for accuracy in [1e-6, 3e-7, 3e-8] {
+        scenario.solver.accuracy = Some(accuracy);
+        let mut clears = |k: u32| {
+            scenario.start.approach = 0.05 + 0.01 * f64::from(k);
+            run(&scenario).outcome == Outcome::Cleared
+        };
+        assert_eq!((0..10).filter(|k| clears(*k)).count(), 10, "{accuracy} m");
+    }
+}
+
 /// Both ends upwards, then the front ones on to the ground, which a motor too weak to lift the robot does not pass.
 #[test]
 fn arms_turn_at_a_commanded_rate_as_far_as_their_motors_can() {

@@ -7,6 +7,8 @@ use crate::run::step_length::SAME_TIME;
 use crate::scenario::{Climb, Drive, Drivetrain, Gait, Hold};
 use crate::units::Seconds;
 
+/// [s] A driver who climbs looks at intervals, so that what it decides does not depend on the length of steps.
+const LOOK: Seconds = Seconds(0.01);
 /// [s] A climbing robot is past the edge once its nose has been down for longer, with its rear flippers on the ground.
 const ON_ITS_NOSE: Seconds = Seconds(1.0);
 
@@ -56,6 +58,9 @@ pub(crate) struct Driver {
     /// Number of entries of the schedule of angles that count, if later ones do not.
     angles: Option<usize>,
     phase: Phase,
+    /// [s] When it looks again, and what the front and the rear flippers have touched since it last did.
+    next_look: f64,
+    touched: [bool; 2],
     /// [s] When the nose went below what counts as level, if it is below.
     nose_down_since: Option<f64>,
     /// Commands by hand that override the gait, front and rear.
@@ -111,14 +116,20 @@ impl Driver {
         }
     }
 
-    /// Whether commands can have led to this state.
-    pub(crate) fn fits(&self, drive: &Drive) -> bool {
+    /// Whether commands can have led to this state at a time [s].
+    pub(crate) fn fits(&self, drive: &Drive, time: f64) -> bool {
         let entries = drive.schedule.as_ref().map_or(0, Vec::len);
         let known = |given: &Option<FlipperCommand>| given.is_none_or(|c| c.value().is_finite());
         let since = self.nose_down_since;
         self.entries <= entries
+            && (0.0..=time + LOOK.value()).contains(&self.next_look)
             && self.by_hand.iter().all(known)
             && since.is_none_or(f64::is_finite)
+    }
+
+    /// [s] When it looks next, if it looks at all.
+    pub(crate) fn next_look(&self) -> f64 {
+        self.next_look
     }
 
     /// Overrides the gait at one end.
@@ -146,7 +157,27 @@ impl Driver {
 
     /// Commands of the flippers during a climb.
     fn climb(&mut self, climb: &Climb, start: f64, sight: DriverView) -> [FlipperCommand; 2] {
-        let [front, rear] = sight.touches;
+        for (touched, touches) in self.touched.iter_mut().zip(sight.touches) {
+            *touched |= touches;
+        }
+        if sight.time > self.next_look - SAME_TIME.value() {
+            self.look(climb, sight);
+            self.next_look = sight.time + LOOK.value();
+            self.touched = [false; 2];
+        }
+        let swept = FlipperCommand::Level(climb.sweep_angle - sight.chassis_angle);
+        let pushed = FlipperCommand::Level(climb.push_angle + sight.chassis_angle);
+        let [reach, start] = [climb.reach_angle, start].map(FlipperCommand::Angle);
+        match self.phase {
+            Phase::Reach => [reach, start],
+            Phase::Sweep => [swept, start],
+            Phase::Lift => [swept, pushed],
+        }
+    }
+
+    /// Chooses the phase of a climb. A contact that opens for an instant, as rigid ones do, is no loss of contact.
+    fn look(&mut self, climb: &Climb, sight: DriverView) {
+        let [front, rear] = self.touched;
         let raised = sight.chassis_angle > climb.level_angle;
         let is_nose_down = sight.chassis_angle < -climb.level_angle;
         self.nose_down_since = (self.nose_down_since.or(Some(sight.time))).filter(|_| is_nose_down);
@@ -160,14 +191,6 @@ impl Driver {
             Phase::Lift if !raised && (!rear || is_on_its_nose) => Phase::Reach,
             same => same,
         };
-        let swept = FlipperCommand::Level(climb.sweep_angle - sight.chassis_angle);
-        let pushed = FlipperCommand::Level(climb.push_angle + sight.chassis_angle);
-        let [reach, start] = [climb.reach_angle, start].map(FlipperCommand::Angle);
-        match self.phase {
-            Phase::Reach => [reach, start],
-            Phase::Sweep => [swept, start],
-            Phase::Lift => [swept, pushed],
-        }
     }
 }
 
@@ -402,6 +425,39 @@ mod driver_tests {
         assert_eq!(after(&[(0.2, rear), (0.05, nothing)]), reach);
     }
 
+    /// Contacts open for an instant where bodies rock on them, the more often the finer the steps are.
+    #[test]
+    fn what_arms_have_touched_since_the_last_look_counts() {
+        let drive = Drive {
+            gait: Some(Gait::Climb(CLIMB)),
+            speed: 0.4,
+            schedule: None,
+        };
+        let mut driver = Driver::default();
+        let mut front_at = |time: f64, touches: bool| {
+            let sight = DriverView {
+                time,
+                chassis_angle: 0.0,
+                touches: [touches, false],
+            };
+            driver.flippers(&drive, 0.3, sight)[0]
+        };
+        let (reach, sweep) = (FlipperCommand::Angle(0.7), FlipperCommand::Level(-0.2));
+        for (time, touches, command) in [
+            (0.0, true, sweep),
+            (0.004, true, sweep),
+            (0.006, false, sweep),
+            (0.01, false, sweep),
+            (0.015, false, sweep),
+            (0.02, false, reach),
+            (0.024, true, reach),
+            (0.028, false, reach),
+            (0.03, false, sweep),
+        ] {
+            assert_eq!(front_at(time, touches), command, "{time} s");
+        }
+    }
+
     /// On level ground they would keep its tail raised for ever. The times are whole seconds.
     #[test]
     fn rear_arms_that_have_stood_a_robot_on_its_nose_for_a_while_let_it_down() {
@@ -533,16 +589,24 @@ mod tests {
         let fits = |change: fn(&mut Driver)| {
             let mut driver = Driver::default();
             change(&mut driver);
-            driver.fits(&drive)
+            driver.fits(&drive, 1.0)
         };
         assert!(fits(|_| {}) && fits(|d| d.entries = 2) && fits(|d| d.nose_down_since = Some(0.3)));
         assert!(!fits(|d| d.entries = 3));
         assert!(!fits(|d| d.nose_down_since = Some(f64::NAN)));
+        assert!(fits(|d| d.next_look = 1.01));
+        for next_look in [1.02, -0.01, f64::NAN] {
+            let driver = Driver {
+                next_look,
+                ..Driver::default()
+            };
+            assert!(!driver.fits(&drive, 1.0), "{next_look} s");
+        }
         assert!(fits(|d| d.take(1, FlipperCommand::Angle(0.3))));
         for end in [0, 1] {
             let mut driver = Driver::default();
             driver.take(end, FlipperCommand::Angle(f64::INFINITY));
-            assert!(!driver.fits(&drive), "{end}");
+            assert!(!driver.fits(&drive, 1.0), "{end}");
         }
     }
 }

@@ -158,7 +158,7 @@ impl Simulation {
             && saved.commands.speed.abs() <= fastest
             && saved.set_point.abs() <= fastest
             && saved.commands.push.fits()
-            && saved.commands.driver.fits(&self.scenario.drive)
+            && saved.commands.driver.fits(&self.scenario.drive, time)
             && saved.state.fits(model)
             && self.dynamics.fits(&saved.impulses, lanes)
             && saved.dents.fits(saved.impulses.contacts())

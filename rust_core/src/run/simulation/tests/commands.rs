@@ -86,6 +86,24 @@ fn a_command_changes_next_at_an_entry_of_a_schedule_or_when_it_is_reached() {
     }
 }
 
+/// At a tenth of a millimetre steps would last 16 ms.
+#[test]
+fn steps_of_a_climbing_robot_end_where_its_driver_looks() {
+    let mut scenario = shared("engineer_flippers_step");
+    scenario.solver.accuracy = Some(1e-4);
+    scenario.start.approach = 1.0;
+    let mut simulation = started(&scenario);
+    let mut looks = 0;
+    while simulation.time() < 0.5 {
+        simulation.step().expect("the state stays finite");
+        let before = 0.01 * f64::from(looks + 1);
+        assert!(simulation.time() < before + 1e-9);
+        looks += i32::from((simulation.time() - before).abs() < 1e-9);
+    }
+    assert!(matches!(scenario.drive.gait, Some(Gait::Climb(_))));
+    assert_eq!(looks, 50);
+}
+
 /// A stop counts from as many windows on as the criteria say, after the push has risen.
 #[test]
 fn a_push_leaves_a_robot_its_windows_to_get_away() {
