@@ -48,6 +48,7 @@ def main(arguments: list[str] | None = None) -> None:
         "--quick", action="store_true", help="few runs, all files next to the store"
     )
     parser.add_argument("--set", type=int, default=1, help="number of the set of cells")
+    parser.add_argument("--rotors", action="store_true", help="search cells of motors with rotors")
     parser.add_argument("--settings", type=Path, default=_SETTINGS, help="settings of the solver")
     parser.add_argument("--looks", type=int, nargs="+", default=list(LOOKS), help="runs of a cell")
     parser.add_argument("--store", type=Path, default=_STORE, help="runs")
@@ -71,7 +72,8 @@ def main(arguments: list[str] | None = None) -> None:
             parser.error(f"no setting {role}; settings: {', '.join(given.settings)}")
     if given.verb == "search" or (given.verb is None and given.quick):
         kinds = tuple(name for name in kinds if given.only in name)
-        for name in complete_cells(given.cells, given.set, kinds, given.threads):
+        search = (given.cells, given.set, kinds, given.threads)
+        for name in complete_cells(*search, rotors=given.rotors):
             progress(f"{name}: no height found in {DRAWS} draws")
     if given.verb == "search":
         return

@@ -146,7 +146,9 @@ class Kind:
     heights: tuple[float, float] = (0.01, 0.3)
     """[m] Range of the search."""
 
-    def robot(self, center_of_mass: tuple[float, float], max_torque: float) -> Robot:
+    def robot(
+        self, center_of_mass: tuple[float, float], max_torque: float, *, rotors: bool = False
+    ) -> Robot:
         """Build the robot.
 
         Parameters
@@ -155,13 +157,16 @@ class Kind:
             [m] Without flippers.
         max_torque : float
             [N m] Of one sprocket.
+        rotors : bool
+            Whether its motors have those of the preset.
         """
         arms = c2d.robots.engineer().flippers if self.ends else None
         if arms is not None and self.ends is not None:
             arms = replace(arms, ends=self.ends)
         robot = c2d.robots.engineer(center_of_mass=center_of_mass, flippers=arms, track=self.track)
         drivetrain = replace(robot.drivetrain, max_torque=max_torque, torque_sharing=self.sharing)
-        return replace(robot, drivetrain=drivetrain).without_rotors()
+        robot = replace(robot, drivetrain=drivetrain)
+        return robot if rotors else robot.without_rotors()
 
 
 def _lines() -> Iterator[Kind]:
@@ -242,6 +247,8 @@ class Cell:
     """[s] Longest simulated time."""
     hold_angle: float = 0.0
     """[rad] Angle of the flippers, for the gait that holds them."""
+    rotors: bool = False
+    """Whether its motors have those of the preset."""
     found: Mapping[str, Any] = field(default_factory=dict)
     """How the height was found: rate, runs, setting, draws that had no such height."""
 
@@ -265,7 +272,7 @@ class Cell:
         """
         gaits = {None: None, "climb": c2d.Climb(), "hold": c2d.Hold(self.hold_angle)}
         return Scenario(
-            self.what.robot(self.center_of_mass, self.max_torque),
+            self.what.robot(self.center_of_mass, self.max_torque, rotors=self.rotors),
             terrain_of(self.obstacle, self.height, self.friction),
             drive=c2d.Drive(speed=self.speed, gait=gaits[self.what.gait]),
             duration=self.duration,

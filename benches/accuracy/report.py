@@ -82,13 +82,15 @@ def _runs(study: Study, machine: dict[str, Any]) -> str:
     figures = [own for each in study.findings for own in each.by_setting.values()]
     runs, failed = sum(own.runs for own in figures), sum(own.failed for own in figures)
     spent = sum(own.processor for own in figures)
+    rotors = sum(each.cell.rotors for each in study.findings)
     looks, curve = " or ".join(map(str, study.looks)), min(CURVE, study.looks[0])
     return f"""
 Set {study.number} (`benches/accuracy/sets/{study.number}.json`): {len(study.findings)} cells,
-{looks} runs of each with {study.default} and {study.reference}, {curve} with the other settings.
-{runs:,} runs, {failed} of them without a result, {spent / 3600.0:.1f} hours of processor time,
-until {machine["date"]}: {machine["processor"]}, {machine["cores"]} cores, {machine["system"]},
-Python {machine["python"]}, crawler2d {machine["versions"]["crawler2d"]}, core
+{rotors} of them of motors with rotors; {looks} runs of each with {study.default} and
+{study.reference}, {curve} with the other settings. {runs:,} runs, {failed} of them without
+a result, {spent / 3600.0:.1f} hours of processor time, until {machine["date"]}:
+{machine["processor"]}, {machine["cores"]} cores, {machine["system"]}, Python
+{machine["python"]}, crawler2d {machine["versions"]["crawler2d"]}, core
 {", ".join(study.builds)}.
 """.strip()
 

@@ -180,6 +180,8 @@ class Store:
 def key(cell: Cell) -> str:
     """Return a hash of everything on which the runs of a cell depend."""
     fields = {name: value for name, value in asdict(cell).items() if name != "found"}
+    if not cell.rotors:
+        del fields["rotors"]  # as in stores that are older than this field
     return hashlib.sha256(_text(fields).encode()).hexdigest()[:16]
 
 

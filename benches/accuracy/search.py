@@ -67,7 +67,7 @@ def _duration(kind: Kind, speed: float, obstacle: Mapping[str, Any]) -> float:
     return float(round(5.0 + (5.0 if kind.ends else 0.0) + 2.0 * way / speed))
 
 
-def find(name: str, seed: int, threads: int | None) -> Cell | None:
+def find(name: str, seed: int, threads: int | None, *, rotors: bool) -> Cell | None:
     """Draw cells of a kind until one has a height at which some runs clear and some do not.
 
     Returns
@@ -76,7 +76,7 @@ def find(name: str, seed: int, threads: int | None) -> Cell | None:
         None if `DRAWS` draws have none.
     """
     for attempt in range(DRAWS):
-        cell = draw(name, seed, attempt)
+        cell = replace(draw(name, seed, attempt), rotors=rotors)
         found = find_height(cell, threads)
         if found is not None:
             return replace(found, found={**found.found, "redrawn": attempt})
@@ -134,7 +134,9 @@ def _rate(cell: Cell, setting: Setting, count: int, threads: int | None) -> tupl
     return sum(cleared) / len(cleared), len(cleared)
 
 
-def complete_cells(path: Path, seed: int, names: Iterable[str], threads: int | None) -> list[str]:
+def complete_cells(
+    path: Path, seed: int, names: Iterable[str], threads: int | None, *, rotors: bool
+) -> list[str]:
     """Add a drawn cell of every kind that a set lacks, and write the set after each.
 
     Parameters
@@ -147,6 +149,8 @@ def complete_cells(path: Path, seed: int, names: Iterable[str], threads: int | N
         Kinds, names in `KINDS`.
     threads : int or None
         See `crawler2d.simulate_many`.
+    rotors : bool
+        Whether motors have the rotors of the preset.
 
     Returns
     -------
@@ -158,7 +162,7 @@ def complete_cells(path: Path, seed: int, names: Iterable[str], threads: int | N
         cells = read(path)
         if any(cell.name == name for cell in cells):
             continue
-        cell = find(name, seed, threads)
+        cell = find(name, seed, threads, rotors=rotors)
         if cell is None:
             without.append(name)
         else:

@@ -81,6 +81,17 @@ def test_a_set_reads_back_as_it_was_written(tmp_path: Path) -> None:
     assert cells.read(tmp_path / "3.json") == drawn
 
 
+def test_motors_have_rotors_only_in_cells_that_say_so() -> None:
+    inertia = c2d.robots.engineer().drivetrain.rotor_inertia
+    with_rotors = replace(DRAWN, rotors=True)
+    found = [cell.scenario(COARSE).robot.drivetrain for cell in (DRAWN, with_rotors)]
+    assert [drive.rotor_inertia for drive in found] == [0.0, inertia]
+    assert inertia > 0.0
+    # The key of a cell in stores that were written before cells had this field.
+    assert runs.key(DRAWN) == "d6937f4c63930178"
+    assert runs.key(with_rotors) != runs.key(DRAWN)
+
+
 def test_draws_of_cells_repeat_and_differ_between_sets() -> None:
     assert search.draw("belt (a)", 1, 0) == search.draw("belt (a)", 1, 0)
     assert search.draw("belt (a)", 1, 0) != search.draw("belt (a)", 2, 0)
