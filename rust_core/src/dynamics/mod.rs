@@ -271,11 +271,15 @@ impl Dynamics {
     /// impulses of half the step.
     fn close_gaps(&mut self, h: f64, strikes: bool) {
         let (soft, most) = (self.softness(h), self.solver.max_push_speed);
+        let times = (h, 0.5 * h);
         for (touch, solved) in self.touches.iter().zip(&mut self.problem.contacts) {
-            if self.chains.is_empty() {
-                touch.close(solved, (h, strikes), soft, most);
-            } else {
-                touch.close_softly(solved, (h, 0.5 * h), soft, most);
+            if !self.chains.is_empty() {
+                touch.close_softly(solved, times, soft, most);
+                continue;
+            }
+            touch.close(solved, times, soft, most);
+            if strikes && touch.gap > 0.0 {
+                solved.compliance = 0.0; // an impact must not compress what is open yet
             }
         }
     }

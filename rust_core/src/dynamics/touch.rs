@@ -146,25 +146,17 @@ impl Touch {
         self.friction_guess = last.map_or(0.0, |l| l.friction_guess);
     }
 
-    /// Sets a contact up for a motion of `h` [s] on a spring: an open gap may just close, and a penetration is pushed out. The
-    /// solve finds the impulse of a `time` [s].
-    pub(super) fn close_softly(
+    /// Sets a contact up for a motion of `h` [s] on a spring: an open gap may close, and a penetration is pushed out. The solve
+    /// finds the impulse of a `time` [s].
+    pub(super) fn close(
         &self,
         solved: &mut Contact,
         (h, time): (f64, f64),
         soft: Softness,
         max_push_speed: f64,
     ) {
-        let share = if self.is_on_ground() {
-            ON_GROUND
-        } else {
-            ON_GUIDE
-        };
-        let compliance = share * soft.compliance * h / time;
         solved.bears = true;
-        solved.compliance = compliance;
-        let springs = (soft.push_rate * h).min(1.0);
-        solved.give_way(compliance, springs, self.friction_guess * time);
+        solved.compliance = soft.compliance * (h / time);
         solved.bias = if self.gap > 0.0 {
             self.gap / h
         } else {
@@ -172,28 +164,22 @@ impl Touch {
         };
     }
 
-    /// Sets a contact up for a motion of `h` [s] on a spring: an open gap may close, and a penetration is pushed out. A gap
-    /// that is open where something `strikes` may just close: the impulse of an impact would compress the spring.
-    pub(super) fn close(
+    /// The same for a robot with chains, whose contacts are stiffer; their grips give way as well.
+    pub(super) fn close_softly(
         &self,
         solved: &mut Contact,
-        (h, strikes): (f64, bool),
+        (h, time): (f64, f64),
         soft: Softness,
         max_push_speed: f64,
     ) {
-        let is_open = self.gap > 0.0;
-        solved.bears = true;
-        solved.bias = if is_open {
-            self.gap / h
+        self.close(solved, (h, time), soft, max_push_speed);
+        solved.compliance *= if self.is_on_ground() {
+            ON_GROUND
         } else {
-            (soft.push_rate * self.gap).max(-max_push_speed)
+            ON_GUIDE
         };
-        // The solve finds the impulse of half the step, and the spring acts for all of it.
-        solved.compliance = if is_open && strikes {
-            0.0
-        } else {
-            2.0 * soft.compliance
-        };
+        let springs = (soft.push_rate * h).min(1.0);
+        solved.give_way(solved.compliance, springs, self.friction_guess * time);
     }
 
     /// Whether it is on the ground, not on the robot itself.
