@@ -112,6 +112,9 @@ class Metrics(dict[str, float]):
 
 _ROWS = {None: "a number", 2: "a point (x, y)", 3: "a circle (x, y, radius)"}
 
+# [s] How far an instant may be outside of the run, whose end titles round this much.
+_ROUNDED = 0.01
+
 # float64 represents every whole number up to here exactly.
 _EXACT = 2**53
 
@@ -191,18 +194,22 @@ def read_range(value: Any, path: str) -> tuple[float, float]:
     return low, high
 
 
-def read_instants(value: Any, path: str) -> NDArray[np.float64]:
-    """Read one instant or several, shape (n,), in seconds.
+def read_instants(value: Any, path: str, time: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Read one instant or several, shape (n,), in seconds, of a run with these samples of time.
 
     Raises
     ------
     ScenarioError
-        If it is anything else.
+        If it is anything else, or outside of the run.
     """
     instants = np.atleast_1d(np.asarray(value))
     is_real = instants.dtype.kind in "iuf" and instants.ndim == 1 and instants.size > 0
     if not is_real or not np.isfinite(instants).all():
         raise ScenarioError(path, value, "must be a number of seconds, or several")
+    first, last = time[0], time[-1]
+    if instants.min() < first - _ROUNDED or instants.max() > last + _ROUNDED:
+        rule = f"must be within the run, from {first:.2f} to {last:.2f} s"
+        raise ScenarioError(path, value, rule)
     return instants.astype(np.float64)
 
 

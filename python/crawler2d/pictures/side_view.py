@@ -39,9 +39,6 @@ _GHOSTS = (SKY, ORANGE, GREEN, PURPLE)
 _MOST_POSES = 7
 """Largest number of poses of the robot in one side view."""
 
-_ROUNDED = 0.01
-"""[s] How far an instant may be outside of the run, whose end titles round this much."""
-
 _PATH: Any = {"linestyle": "-", "linewidth": 1.2, "zorder": 3}
 
 
@@ -52,11 +49,7 @@ def plot_run(run: Record, ax: Axes | None, time: ArrayLike | None, *, trials: bo
     envelopes of its wheels, and the ground and edges inside them. If this is the end of the run,
     also draw the ends of the trials that freed the robot. See `Run.plot` for the parameters.
     """
-    times = _drawing_times(run) if time is None else read_instants(time, "time")
-    first, last = run.time[0], run.time[-1]
-    if times.min() < first - _ROUNDED or times.max() > last + _ROUNDED:
-        rule = f"must be within the run, from {first:.2f} to {last:.2f} s"
-        raise ScenarioError("time", time, rule)
+    times = _drawing_times(run) if time is None else read_instants(time, "time", run.time)
     samples = np.unique([np.abs(run.time - t).argmin() for t in times])
     scene, shown = scene_of(run), int(samples[-1])
     left, right, bottom, top = scene.extent()

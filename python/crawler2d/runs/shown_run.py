@@ -214,7 +214,7 @@ class ShownRun(Record):
         Raises
         ------
         ScenarioError
-            If `time` is not a finite number.
+            If `time` is not a number within the run.
         OSError
             If the file cannot be written.
         AttributeError
@@ -290,7 +290,7 @@ class ShownRun(Record):
         Raises
         ------
         ScenarioError
-            If `time` is not a finite number.
+            If `time` is not a number within the run.
         ImportError
             If anywidget is missing; the message names the extra to install.
         AttributeError
