@@ -250,6 +250,18 @@ def test_results_that_are_values_equal_their_copies_and_no_others() -> None:
         assert one != another
 
 
+def test_equal_values_share_a_hash_and_others_hardly_ever() -> None:
+    ones = [Table({"x": np.array([-0.0, np.nan, 1.0]), "kind": [(1, 2), (), (3,)]})]
+    ones.append(Table({"x": np.array([0.0, np.nan, 1.0], dtype="f4"), "kind": [(1, 2), (), (3,)]}))
+    assert ones[0] == ones[1]
+    assert len(set(ones)) == 1
+    sim, states = c2d.Simulation(Scenario(ROBOT, c2d.terrains.flat())), []
+    for _ in range(20):
+        states.append(sim.state())
+        sim.advance(0.01)
+    assert len(set(map(hash, states))) == len(set(map(hash, [s.contacts for s in states]))) == 20
+
+
 def test_the_repr_is_one_short_line(run: c2d.Run) -> None:
     assert (
         repr(run)

@@ -309,6 +309,10 @@ def _summary(value: Any, array: np.ndarray[Any, Any]) -> object:
     return value
 
 
+# Numbers of an array that its hash depends on.
+_HASHED = 32
+
+
 class ByValue:
     """A dataclass of which two are equal if all fields are, also arrays and NaN in them."""
 
@@ -322,8 +326,9 @@ class ByValue:
         return all(_is_same(getattr(self, name), getattr(other, name)) for name in names)
 
     def __hash__(self) -> int:
-        """Return a number that equal ones share, as arrays have none."""
-        return hash(type(self))
+        """Combine the hashes of all fields."""
+        values = [getattr(self, field.name) for field in fields(self)]  # type: ignore[arg-type]
+        return hash((type(self), *map(_hash, values)))
 
 
 def _is_same(one: Any, other: Any) -> bool:
@@ -335,6 +340,15 @@ def _is_same(one: Any, other: Any) -> bool:
     if isinstance(one, dict) and isinstance(other, dict):
         return one.keys() == other.keys() and all(_is_same(one[key], other[key]) for key in one)
     return bool(one == other) or bool(one != one and other != other)  # noqa: PLR0124 - NaN
+
+
+def _hash(value: Any) -> int:
+    """Return a number that equal values share, of long arrays that of their beginning."""
+    if isinstance(value, np.ndarray):
+        return hash(tuple(map(_hash, value.flat[:_HASHED])))
+    if isinstance(value, dict):
+        return hash(frozenset((key, _hash(each)) for key, each in value.items()))
+    return hash(value) if value == value else 0  # noqa: PLR0124 - each NaN has a hash of its own
 
 
 # Rows of a table shown by a notebook.
@@ -402,8 +416,8 @@ class Table(Mapping[str, "NDArray[Any]"]):
         return _is_same(self._columns, other._columns) if isinstance(other, Table) else False
 
     def __hash__(self) -> int:
-        """Return a number that equal tables share, as arrays have none."""
-        return hash(frozenset(self))
+        """Combine the hashes of all columns."""
+        return _hash(self._columns)
 
     def __reduce__(self) -> tuple[type[Table], tuple[dict[str, Any]]]:
         """Pickle the columns; they stay read-only in the copy."""
