@@ -259,6 +259,16 @@ def test_a_rule_between_fields_names_the_field_to_change(path: str, value: Any) 
     assert error.path == path
 
 
+@pytest.mark.parametrize("version", [3, 30, "1" * 5000, "3.0", '"3"', -1])
+def test_the_error_for_a_newer_file_says_that_it_is_newer(version: Any) -> None:
+    newer = changed("belt-step", ("robot", "new"), 1) | {"schema": "?"}
+    with pytest.raises(c2d.ScenarioError) as caught:
+        Scenario.from_json(json.dumps(newer).replace('"?"', str(version)))
+    assert caught.value.path == "schema"
+    said = caught.value.rule == "must be 2; a newer version of crawler2d wrote the file"
+    assert said is (version in (3, 30))
+
+
 def test_the_error_for_a_version_1_file_says_what_has_changed() -> None:
     old = changed("belt-step", ("schema",), 1)
     del old["solver"]["accuracy"]

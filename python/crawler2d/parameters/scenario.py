@@ -142,7 +142,7 @@ class Scenario(ScenarioBase):
             whole = _core.canonical(text)
         except ScenarioError as error:
             if error.path == "schema":
-                _refuse_another_object(text)
+                _refuse_another_file(text, error)
             raise
         return from_dict(cls, json.loads(whole))
 
@@ -218,15 +218,19 @@ class Scenario(ScenarioBase):
             return None
 
 
-def _refuse_another_object(text: str) -> None:
-    """Refuse JSON without any field of a scenario.
+def _refuse_another_file(text: str, error: ScenarioError) -> None:
+    """Refuse JSON without any field of a scenario, and a scenario of a newer version.
 
     Raises
     ------
     ScenarioError
-        If no key is a field of a scenario.
+        If no key is a field of a scenario, or the version of the format is greater than this one.
     """
-    keys = list(json.loads(text))
+    version = str(error.value)
+    if version.isdecimal() and int(version) > int(_core.build_info()["schema"]):
+        rule = f"{error.rule}; a newer version of crawler2d wrote the file"
+        raise ScenarioError("schema", error.value, rule)
+    keys = list(json.loads(text, parse_int=float))  # int refuses more than 4300 digits
     if not {"schema", *(field.name for field in fields_of(Scenario))}.intersection(keys):
         shown = ", ".join(keys[:_MOST_KEYS]) + (", ..." if len(keys) > _MOST_KEYS else "")
         rule = "must be what Scenario.to_json writes, with the keys schema, robot, terrain and more"
