@@ -153,7 +153,8 @@ def test_a_bad_number_is_refused_once_not_for_every_robot(
 ) -> None:
     page = tmp_path / "atlas.html"
     assert main(["atlas", str(forest), "--html", str(page), f"--{option}", "0"]) == 2
-    assert f"{option} must be a whole number from 1" in capsys.readouterr().err
+    said = f"crawler2d atlas: --{option} must be a whole number from 1"
+    assert capsys.readouterr().err.startswith(said)
     assert not page.exists()
 
 

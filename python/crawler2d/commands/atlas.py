@@ -83,7 +83,7 @@ def run(options: argparse.Namespace) -> int:
     if not folder.is_dir():
         raise ScenarioError("FOLDER", str(folder), "must be a folder")
     whole_number(options.samples, "--samples", 1, 10**5)
-    thread_count(options.threads)
+    thread_count(options.threads, "--threads")
     entries: list[Entry] = []
     try:
         files = list(main_files(folder))

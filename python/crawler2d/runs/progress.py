@@ -18,13 +18,15 @@ _VARIABLE = "CRAWLER2D_THREADS"
 _RULE = f"must be a whole number from 1 to {_MOST}"
 
 
-def thread_count(threads: int | None) -> int:
+def thread_count(threads: int | None, path: str = "threads") -> int:
     """Determine the number of threads.
 
     Parameters
     ----------
     threads : int, optional
         Requested number, 1 to 1024; None requests every core of this process.
+    path : str
+        What errors call it.
 
     Returns
     -------
@@ -41,7 +43,7 @@ def thread_count(threads: int | None) -> int:
         return min(_cores(), limit)
     asked = read_scalar(threads, whole=True)
     if type(asked) is not int or not 1 <= asked <= _MOST:
-        raise LimitError(f"threads {_RULE}, got {repr(threads)[:40]}")
+        raise LimitError(f"{path} {_RULE}, got {repr(threads)[:40]}")
     return min(asked, limit)
 
 
