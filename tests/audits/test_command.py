@@ -71,6 +71,17 @@ def test_the_command_refuses_bad_input_in_one_line(capsys: Any, arguments: list[
     assert len(err.strip().splitlines()) == 1
 
 
+@pytest.mark.parametrize("place", [".", "no folder/store", "not a store"])
+def test_a_wrong_store_is_refused_before_any_result(
+    capsys: Any, monkeypatch: Any, tmp_path: Path, place: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "not a store").write_text("a text")
+    status, out, err = run(capsys, str(FILES / "cart.urdf"), "--store", place)
+    assert (status, out) == (2, "")
+    assert err.startswith(f"crawler2d audit: {place} ")
+
+
 def test_the_command_says_whether_it_seizes(
     capsys: Any, monkeypatch: Any, found: c2d.Audit
 ) -> None:

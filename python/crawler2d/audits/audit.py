@@ -44,6 +44,7 @@ from crawler2d.parameters.settings import Drive
 from crawler2d.parameters.terrain import Terrain
 from crawler2d.reading.reading import Reading
 from crawler2d.runs.progress import Progress, thread_count
+from crawler2d.sweeps.store import Store
 from crawler2d.variation.distributions import Ranges
 
 if TYPE_CHECKING:
@@ -275,6 +276,8 @@ def audit(
     ScenarioError
         If the file cannot be read, or an argument or the robot breaks a rule; or if the file has a
         size that no tracked robot has, and `scale` is not given.
+    StoreError
+        If `store` cannot be used, before the first run, or fails.
     BatchInterrupted
         On Ctrl-C; a store keeps the finished runs.
     ImportError
@@ -360,6 +363,8 @@ def audit(
                 reading={} if read is None else read.how.given,
             ),
         )
+        if store is not None:
+            Store(store).close()  # an error before any result
         write(head_of(setup))
         assumed = {} if "unknown" in setup.call.own else assumptions_of(own, unknown)
         verdicts, others, table = _drive(setup, runs, assumed, write, show)
