@@ -244,12 +244,14 @@ def test_arguments_that_no_file_has_get_a_warning(tmp_path: Path) -> None:
     pytest.importorskip("xacrodoc")
     (tmp_path / "sizes.yaml").write_text("load: 3\n", encoding="utf-8")
     text = f'{XACRO}<xacro:arg name="mass" default="8"/>{urdf(WHEELS).partition(">")[2]}'
-    given = {"mas": "18", "Mass": "2", "mass": "9", "load": "1"}
+    text = text.replace("<link", '<xacro:if value="$(eval heavy)"/><link', 1)
+    given = {"mas": "18", "Mass": "2", "mass": "9", "load": "1", "radius": "0.2", "heavy": "0"}
     found = read(tmp_path, text, "cart.xacro", arguments=given).warnings
     close = "it must be an argument of the model (did you mean mass?)"
     assert [each for each in found if "no effect" in each] == [
         f"arguments[mas] has no effect: {close}, got mas=18",
         f"arguments[Mass] has no effect: {close}, got Mass=2",
+        "arguments[radius] has no effect: it must be an argument of the model, got radius=0.2",
     ]
 
 

@@ -39,6 +39,8 @@ _NOTHING = ("null", "Null", "NULL", "~")
 _CULPRITS = re.compile(r"unknown macro name: (\S+)|'([^']{2,})'")
 
 _EVALUATED = re.compile(r"when evaluating expression '(.*)'", re.DOTALL)
+# Where a text uses arguments: $(arg name), arg('name'), $(eval name).
+_USES = re.compile(r"\$\(arg\s[^)]*|\barg\([^)]*|\$\(eval\s[^<]*")
 _MOST_PASSES = 5
 _MOST_WARNINGS = 100
 
@@ -408,21 +410,18 @@ def _warnings_of(
 def _useless(
     arguments: Mapping[str, str], files: XacroFiles, package: Settings
 ) -> Iterator[ReadingWarning]:
-    """Report given arguments that neither the model nor its settings name.
+    """Report given arguments that are neither used in the model nor among its settings.
 
     Settings count, because a repository often passes all of them, used or not.
     """
+    used = " ".join(use for text in files.texts.values() for use in _USES.findall(text))
     for name, value in arguments.items():
-        is_named = name in files.defaults or any(map(_word(name), files.texts.values()))
-        if not is_named and not package.have(name):
+        is_known = name in files.defaults or re.search(rf"(?<!\w){re.escape(name)}(?!\w)", used)
+        if not is_known and not package.have(name):
             close = difflib.get_close_matches(name, files.defaults, n=1)
             meant = f" (did you mean {close[0]}?)" if close else ""
             reason = f"has no effect: it must be an argument of the model{meant}"
             yield f"arguments[{name}]", f"{name}={value}", reason
-
-
-def _word(name: str) -> Callable[[str], object]:
-    return re.compile(rf"(?<!\w){re.escape(name)}(?!\w)").search
 
 
 def _value(text: str) -> float | str:
