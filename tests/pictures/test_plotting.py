@@ -229,7 +229,14 @@ def test_an_instant_is_a_finite_number(run: c2d.Run, time: Any) -> None:
             show(time=time)
 
 
-@pytest.mark.parametrize("time", [-1.0, 1e6, [0.0, 1e6]])
+def test_a_page_opens_at_one_instant(run: c2d.Run) -> None:
+    several: Any = [0.5, 1.0]
+    for show in (run.to_html, run.widget):
+        with pytest.raises(c2d.ScenarioError, match=r"^time must be a number of seconds, got \["):
+            show(time=several)
+
+
+@pytest.mark.parametrize("time", [-1.0, 1e6])
 def test_an_instant_is_within_the_run_give_or_take_how_titles_round(
     run: c2d.Run, time: Any
 ) -> None:

@@ -194,23 +194,26 @@ def read_range(value: Any, path: str) -> tuple[float, float]:
     return low, high
 
 
-def read_instants(value: Any, path: str, time: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Read one instant or several, shape (n,), in seconds, of a run with these samples of time.
+def read_instants(
+    value: Any, path: str, time: NDArray[np.float64], *, several: bool
+) -> NDArray[np.float64]:
+    """Read one instant, or several, shape (n,), in seconds, of a run with these samples of time.
 
     Raises
     ------
     ScenarioError
         If it is anything else, or outside of the run.
     """
-    instants = np.atleast_1d(np.asarray(value))
-    is_real = instants.dtype.kind in "iuf" and instants.ndim == 1 and instants.size > 0
+    instants = np.asarray(value)
+    is_real = instants.dtype.kind in "iuf" and instants.ndim <= several and instants.size > 0
     if not is_real or not np.isfinite(instants).all():
-        raise ScenarioError(path, value, "must be a number of seconds, or several")
+        rule = f"must be a number of seconds{', or several' if several else ''}"
+        raise ScenarioError(path, value, rule)
     first, last = time[0], time[-1]
     if instants.min() < first - _ROUNDED or instants.max() > last + _ROUNDED:
         rule = f"must be within the run, from {first:.2f} to {last:.2f} s"
         raise ScenarioError(path, value, rule)
-    return instants.astype(np.float64)
+    return np.atleast_1d(instants.astype(np.float64))
 
 
 def read_bool(value: object, path: str) -> bool:

@@ -49,7 +49,10 @@ def plot_run(run: Record, ax: Axes | None, time: ArrayLike | None, *, trials: bo
     envelopes of its wheels, and the ground and edges inside them. If this is the end of the run,
     also draw the ends of the trials that freed the robot. See `Run.plot` for the parameters.
     """
-    times = _drawing_times(run) if time is None else read_instants(time, "time", run.time)
+    if time is None:
+        times = _drawing_times(run)
+    else:
+        times = read_instants(time, "time", run.time, several=True)
     samples = np.unique([np.abs(run.time - t).argmin() for t in times])
     scene, shown = scene_of(run), int(samples[-1])
     left, right, bottom, top = scene.extent()

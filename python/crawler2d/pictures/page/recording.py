@@ -64,7 +64,7 @@ def recording(run: Record, time: float | None = None, *, most: int = MOST_FRAMES
     if time is None:
         stops = run.events["end"][run.events["kind"] == "stop"]
         time = float(run.time[-1] if (stops == run.time[-1]).any() else run.time[0])
-    instant = read_instants(time, "time", run.time)[0]
+    instant = read_instants(time, "time", run.time, several=False)[0]
     scene = scene_of(run)
     return {
         "samples": count,
