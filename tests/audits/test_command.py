@@ -71,6 +71,13 @@ def test_the_command_refuses_bad_input_in_one_line(capsys: Any, arguments: list[
     assert len(err.strip().splitlines()) == 1
 
 
+def test_what_is_no_baseline_is_refused_by_the_name_of_the_option(capsys: Any) -> None:
+    file = str(FILES / "cart.urdf")
+    status, out, err = run(capsys, file, "--baseline", file)
+    assert (status, out) == (2, "")
+    assert err.startswith("crawler2d audit: --baseline must be a file that --update-baseline wrote")
+
+
 @pytest.mark.parametrize("place", [".", "no folder/store", "not a store"])
 def test_a_wrong_store_is_refused_before_any_result(
     capsys: Any, monkeypatch: Any, tmp_path: Path, place: str

@@ -45,6 +45,7 @@ _ALIKE = ("samples", "repeats", "seed", "store", "threads", "quick", "trusted", 
 OPTIONS = {
     **{name: f"--{name.replace('_', '-')}" for name in (*_ALIKE, *READING)},
     **{f"{name}s": f"--{name}" for name in ("track", "package", "argument")},
+    "baseline": "--baseline",
     "path": "FILE",
 }
 """Spelling of the keywords of `audit` in the command, and of its outputs."""
