@@ -342,6 +342,11 @@ def test_a_wrong_argument_is_refused_before_anything_runs(
         assert failure.value.path == path
 
 
+def test_a_wrong_number_of_threads_is_refused_at_once() -> None:
+    with pytest.raises(c2d.LimitError, match=r"threads must be a whole number from 1 to 1024, got 0"):
+        FlipperVectorEnv(2, threads=0)
+
+
 def test_a_range_is_refused_by_its_middle_at_once_and_else_when_what_is_drawn_breaks_a_rule() -> (
     None
 ):

@@ -25,6 +25,7 @@ from crawler2d.envs.task import FlipperCommand, Observe
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.terrain import Terrain
+from crawler2d.runs.progress import thread_count
 from crawler2d.runs.run import Run
 
 if TYPE_CHECKING:
@@ -104,7 +105,7 @@ class FlipperVectorEnv(TakesMadeKeywords, VectorEnv, EzPickle):
         self.observation_space, self.action_space = (
             batch_space(space, self.num_envs) for space in spaces
         )
-        self._threads, self._supply = threads, Supply(self.task, self.num_envs)
+        self._threads, self._supply = thread_count(threads), Supply(self.task, self.num_envs)
         self._episodes: Episodes | None = None
         self._ended = np.zeros(self.num_envs, bool)
         self._generators: list[np.random.Generator] = []
