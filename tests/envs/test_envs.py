@@ -343,7 +343,7 @@ def test_a_wrong_argument_is_refused_before_anything_runs(
 
 
 def test_a_wrong_number_of_threads_is_refused_at_once() -> None:
-    with pytest.raises(c2d.LimitError, match=r"threads must be a whole number from 1 to 1024, got 0"):
+    with pytest.raises(c2d.LimitError, match=r"threads must be a whole number from 1 .*, got 0"):
         FlipperVectorEnv(2, threads=0)
 
 

@@ -305,9 +305,9 @@ def replace_path(parameters: P, path: str, value: Any, *, given: Collection[str]
     return copy
 
 
-def read_path(parameters: Parameters, path: str) -> Any:
-    """Return the value at a path; raises the errors of `replace_path`."""
-    return _nodes_along(parameters, path, None)[-1]
+def read_path(parameters: Parameters, path: str, given: Any = None) -> Any:
+    """Return the value at a path; raises the errors of `replace_path`, about what was given."""
+    return _nodes_along(parameters, path, given)[-1]
 
 
 def expand_path(parameters: Parameters, path: str) -> list[str]:

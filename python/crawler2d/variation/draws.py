@@ -175,7 +175,7 @@ class Variation:
             for field in fields_at(cell, path):
                 if field != path and field in self.distributions:
                     continue  # drawn separately
-                nominal = read_path(cell, field)
+                nominal = read_path(cell, field, distribution)
                 if own is not None:
                     nominal = own.get(field, nominal)
                 whole[field] = is_whole(cell, field)
