@@ -108,9 +108,10 @@ def run_command(
         return 128 + _SIGPIPE
     except OSError as error:
         is_own = isinstance(error, Crawler2dError)
-        place = error.filename or "standard output"
+        unnamed = "working folder" if isinstance(error, FileNotFoundError) else "standard output"
+        place = error.filename or unnamed
         _tell(called, str(error) if is_own else f"{place}: {error.strerror or error}")
-        if not is_own and not error.filename:
+        if not is_own and place == "standard output":
             _give_up_output()
         return 2
     except (Crawler2dError, ImportError) as error:

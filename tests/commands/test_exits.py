@@ -162,6 +162,21 @@ def test_an_output_that_is_full_is_one_line(tmp_path: Path) -> None:
     assert done.stderr == "crawler2d schema: standard output: No space left on device\n"
 
 
+def test_a_working_folder_that_is_gone_is_named_not_the_output(tmp_path: Path) -> None:
+    (tmp_path / "run.json").write_text(LONG.to_json(), encoding="utf-8")
+    program = "import os, sys; os.rmdir(os.getcwd()); from crawler2d.__main__ import main"
+    (tmp_path / "gone").mkdir()
+    done = subprocess.run(
+        [sys.executable, "-c", f"{program}; sys.exit(main())", "run", "../run.json"],
+        cwd=tmp_path / "gone",
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr == "crawler2d run: working folder: No such file or directory\n"
+
+
 @pytest.mark.parametrize("option", ["--help", "--version"])
 def test_help_and_version_go_to_the_standard_output(option: str) -> None:
     done = subprocess.run(
