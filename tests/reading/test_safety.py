@@ -181,11 +181,23 @@ def test_what_is_no_model_at_all_is_refused(tmp_path: Path, data: bytes, rule: s
         c2d.read_robot(path)
 
 
-@pytest.mark.parametrize("path", ["", "nowhere.sdf", "a\0b.sdf", "x" * 5000, None, 7, b"a.sdf"])
+LONG_NAME = "x" * 5000
+
+
+@pytest.mark.parametrize(
+    "path",
+    ["", "nowhere.sdf", "a\0b.sdf", LONG_NAME, f"{LONG_NAME}/a.sdf", None, 7, b"a.sdf"],
+)
 def test_a_path_that_is_no_file_is_refused(path: object) -> None:
     with refusing(SAID) as caught:
         c2d.read_robot(path)  # type: ignore[arg-type]
     assert caught.value.path == "path"
+
+
+def test_the_text_of_a_model_is_refused_as_a_path() -> None:
+    """As ROS has it in the parameter robot_description."""
+    with refusing(SAID, r"must be a path, got .*; write the text of a model to a file$"):
+        c2d.read_robot(urdf(WHEELS))
 
 
 def test_a_line_is_that_of_an_editor_whatever_ends_lines_within_it(tmp_path: Path) -> None:

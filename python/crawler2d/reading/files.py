@@ -364,9 +364,9 @@ def _starts(folder: Path) -> tuple[list[Path], list[Path]]:
     have sibling packages, unless they are a home or temporary folder.
     """
     near = [folder, *folder.parents][:_FARTHEST]
-    packages = [each for each in near if any((each / name).is_file() for name in MANIFESTS)]
+    packages = [each for each in near if any(os.path.isfile(each / name) for name in MANIFESTS)]
     for each in near:
-        if (each / ".git").exists():
+        if os.path.exists(each / ".git"):
             return list(dict.fromkeys([*packages[:1], each])), []
     if packages:
         wider = packages[-1].parents[:_WIDER]

@@ -240,6 +240,8 @@ def read_robot(
     """
     if not isinstance(path, (str, os.PathLike)):
         raise ScenarioError("path", path, "must be a path")
+    if isinstance(path, str) and path.lstrip().startswith("<"):
+        raise ScenarioError("path", path, "must be a path; write the text of a model to a file")
     if isinstance(tracks, str) or not isinstance(tracks, Collection) or not is_iterable(tracks):
         raise ScenarioError("tracks", tracks, "must be a collection of names of links")
     options = ReadOptions(
