@@ -231,6 +231,15 @@ def test_a_missing_effort_limit_is_found(tmp_path: Path) -> None:
     assert of_text(tmp_path, urdf(WHEELS, MOTORS), "effort") == []
 
 
+def test_an_effort_limit_of_0_is_none_but_in_gz(tmp_path: Path) -> None:
+    zero = '<limit effort="0" velocity="10"/>'
+    text = urdf(pair("front", 0.2, limit=zero), pair("rear", -0.2, limit=zero), MOTORS)
+    (found,) = of_text(tmp_path, text, "effort", engine="gz")
+    assert found.message.startswith("4 of 4 wheels have an effort limit of 0: their motors turn no")
+    (found,) = of_text(tmp_path, text, "effort", engine="mujoco")
+    assert found.message.startswith("4 of 4 wheels have no effort limit")
+
+
 def test_a_wheel_that_rolls_freely_needs_no_limit_of_effort(tmp_path: Path) -> None:
     rear = "".join(BLOCK.format(name=name) for name in NAMES[1::2])
     text = urdf(pair("front", 0.2, limit=""), pair("rear", -0.2), rear)

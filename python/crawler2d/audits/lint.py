@@ -356,10 +356,12 @@ def _no_effort_limit(reading: Reading) -> Iterator[_Break]:
     if without:
         torque = reading.robot.drivetrain.max_torque
         is_estimate = "robot.drivetrain.max_torque" in reading.sources.estimates
+        found = "no effort limit: their motors hold the speed under any load"
+        if reading.engine == "gz" and all(joint.effort == 0.0 for joint in without):
+            found = "an effort limit of 0: their motors turn nothing in gz-sim"
         message = (
-            f"{len(without)} of {len(wheels)} wheels have no effort limit: their motors hold the"
-            f" speed under any load; here they have {torque:.3g} N m per track,"
-            f" {'an estimate' if is_estimate else 'those of the others'}"
+            f"{len(without)} of {len(wheels)} wheels have {found}; here they have {torque:.3g} N m"
+            f" per track, {'an estimate' if is_estimate else 'those of the others'}"
         )
         yield _Break(message, lines([joint.effort_at for joint in without]))
 
