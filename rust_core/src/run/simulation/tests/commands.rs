@@ -96,9 +96,9 @@ fn steps_of_a_climbing_robot_end_where_its_driver_looks() {
     let mut looks = 0;
     while simulation.time() < 0.5 {
         simulation.step().expect("the state stays finite");
-        let before = 0.01 * f64::from(looks + 1);
-        assert!(simulation.time() < before + 1e-9);
-        looks += i32::from((simulation.time() - before).abs() < 1e-9);
+        let look = 0.01 * f64::from(looks + 1);
+        assert!(simulation.time() < look + 1e-9);
+        looks += i32::from((simulation.time() - look).abs() < 1e-9);
     }
     assert!(matches!(scenario.drive.gait, Some(Gait::Climb(_))));
     assert_eq!(looks, 50);
