@@ -72,8 +72,8 @@ def main(arguments: list[str] | None = None) -> None:
             parser.error(f"no setting {role}; settings: {', '.join(given.settings)}")
     if given.verb == "search" or (given.verb is None and given.quick):
         kinds = tuple(name for name in kinds if given.only in name)
-        search = (given.cells, given.set, kinds, given.threads)
-        for name in complete_cells(*search, rotors=given.rotors):
+        without = complete_cells(given.cells, given.set, kinds, given.threads, rotors=given.rotors)
+        for name in without:
             progress(f"{name}: no height found in {DRAWS} draws")
     if given.verb == "search":
         return

@@ -147,7 +147,7 @@ class Kind:
     """[m] Range of the search."""
 
     def robot(
-        self, center_of_mass: tuple[float, float], max_torque: float, *, rotors: bool = False
+        self, center_of_mass: tuple[float, float], max_torque: float, *, rotors: bool
     ) -> Robot:
         """Build the robot.
 

@@ -108,10 +108,10 @@ def run_command(
         return 128 + _SIGPIPE
     except OSError as error:
         is_own = isinstance(error, Crawler2dError)
-        unnamed = "working folder" if isinstance(error, FileNotFoundError) else "standard output"
-        place = error.filename or unnamed
+        is_output = not (is_own or error.filename or isinstance(error, FileNotFoundError))
+        place = "standard output" if is_output else error.filename or "working folder"
         _tell(called, str(error) if is_own else f"{place}: {error.strerror or error}")
-        if not is_own and place == "standard output":
+        if is_output:
             _give_up_output()
         return 2
     except (Crawler2dError, ImportError) as error:
