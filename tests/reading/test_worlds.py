@@ -151,6 +151,12 @@ def test_what_a_flag_of_mujoco_disables_gets_a_warning(tmp_path: Path) -> None:
             "<gazebo><turnGravityOff>true</turnGravityOff></gazebo>",
             "<gazebo><turnGravityOff>false</turnGravityOff></gazebo>",
         ),
+        (
+            "cart.urdf",
+            '<robot name="cart">',
+            '<gazebo reference="hull"><gravity>false</gravity></gazebo>',
+            '<gazebo reference="hull"><gravity>true</gravity></gazebo>',
+        ),
         ("cart.xml", "<body", ' gravcomp="1"', ' gravcomp="0.0"'),
     ],
 )
@@ -164,3 +170,25 @@ def test_a_link_without_gravity_gets_a_warning(
     (found,) = of_gravity(read(tmp_path, text.replace(before, before + off, 1), name))
     assert found.endswith("is not used: here every link has its weight, got 1 without gravity")
     assert of_gravity(read(tmp_path, text.replace(before, before + on, 1), name)) == []
+
+
+@pytest.mark.parametrize(
+    ("name", "before", "block"),
+    [
+        ("cart.sdf", '<link name="hull">', "<kinematic>{}</kinematic>"),
+        (
+            "cart.urdf",
+            '<robot name="cart">',
+            '<gazebo reference="hull"><kinematic>{}</kinematic></gazebo>',
+        ),
+    ],
+)
+def test_a_link_that_no_force_moves_gets_a_warning(
+    tmp_path: Path, name: str, before: str, block: str
+) -> None:
+    text = (FILES / name).read_text(encoding="utf-8")
+    for value, count in (("true", 1), ("0", 0)):
+        reading = read(tmp_path, text.replace(before, before + block.format(value), 1), name)
+        found = [each for each in reading.warnings if "kinematic is not used" in each]
+        assert len(found) == count
+        assert all(each.endswith("got 1 that no force moves") for each in found)

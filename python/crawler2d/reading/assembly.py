@@ -27,7 +27,6 @@ from crawler2d.reading.running_gear import (
     running_gear_of,
     side_view,
 )
-from crawler2d.reading.slip import warn_of_slip
 from crawler2d.reading.surfaces import surfaces_of
 from crawler2d.reading.tracks import (
     Base,
@@ -38,6 +37,7 @@ from crawler2d.reading.tracks import (
     silhouette,
     wheels_of,
 )
+from crawler2d.reading.unused import warn_of_slip
 from crawler2d.reading.wheels import Runner, RunningGear
 
 __all__ = ["Assembly", "Silhouette", "assemble", "silhouettes"]

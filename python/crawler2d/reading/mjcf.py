@@ -40,10 +40,9 @@ from crawler2d.reading.parts import (
     collisions,
     ellipsoid,
     order_links,
-    warn_of_gravity,
     warn_of_tilt,
-    warn_of_weightless,
 )
+from crawler2d.reading.unused import warn_of_gravity, warn_of_unmoved
 
 __all__ = ["read_mjcf"]
 
@@ -96,7 +95,7 @@ def read_mjcf(root: Element, text: str, model: str | None, meshes: Meshes) -> Tr
     question = {"text": text, "file": file, "files": meshes.files.parameters}
     answer = ask_child(__name__, question, file=file, files=meshes.files)
     _check_numbers(answer, file)
-    warn_of_weightless(root, meshes.warnings)
+    warn_of_unmoved(root, meshes.warnings)
     pairs = [each for contact in root.all("contact") for each in contact.all("pair")]
     if pairs:
         reason = "is not used: here surfaces have the friction of their geoms"

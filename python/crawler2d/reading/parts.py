@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import difflib
 import math
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
@@ -49,9 +48,7 @@ __all__ = [
     "plugin_of",
     "shape_of",
     "solid",
-    "warn_of_gravity",
     "warn_of_tilt",
-    "warn_of_weightless",
     "wheel_torques",
 ]
 
@@ -95,8 +92,6 @@ Limit = tuple[float, Where]
 _MOST_LINKS = 1000
 _USUAL_FRICTION = 1.0  # default of SDF
 _LONGEST_NAME = 200
-_GRAVITY = (0.0, 0.0, -9.81)  # [m/s^2] Default of a scenario.
-_NEAR = 0.01  # of gravity, as files have 9.8 or a local value
 _UPRIGHT = 0.01  # [rad] A root with a smaller tilt counts as upright.
 
 
@@ -372,38 +367,6 @@ def warn_of_tilt(path: str, pose: Pose, what: str, warnings: list[ReadingWarning
     if tilt > _UPRIGHT:
         reason = f"is left out: the z axis of the {what} is taken as upwards"
         warnings.append((path, f"{math.degrees(tilt):.3g} degrees off upright", reason))
-
-
-def warn_of_gravity(
-    element: Element, attribute: str | None, warnings: list[ReadingWarning]
-) -> None:
-    """Warn of gravity that differs from that of a scenario; what is no vector is passed over."""
-    with contextlib.suppress(ScenarioError):
-        vector = element.reals(3, attribute)
-        if math.dist(vector, _GRAVITY) > _NEAR * math.hypot(*_GRAVITY):
-            path = element.at if attribute is None else f"{element.at}@{attribute}"
-            value = " ".join(f"{each:g}" for each in vector)
-            reason = "is not used: here gravity is 9.81 m/s^2 downwards, or Scenario.gravity"
-            warnings.append((path, value, reason))
-
-
-def warn_of_weightless(model: Element, warnings: list[ReadingWarning]) -> None:
-    """Warn of links without gravity, as SDF, extensions of URDF and MJCF may have them."""
-    found = [
-        each
-        for each in model.within()
-        if (each.tag == "gravity" and each.text.lower() in ("0", "false") and _is_in(each, "link"))
-        or (each.tag == "turnGravityOff" and each.text.lower() in ("1", "true"))
-        or (each.tag == "body" and each.attributes.get("gravcomp", "0").strip(" 0.") != "")
-    ]
-    if found:
-        path = f"{found[0].at}@gravcomp" if found[0].tag == "body" else found[0].at
-        value = f"{len(found)} without gravity"
-        warnings.append((path, value, "is not used: here every link has its weight"))
-
-
-def _is_in(element: Element, tag: str) -> bool:
-    return element.parent is not None and element.parent.tag == tag
 
 
 def coefficient(element: Element | None, owner: Element) -> Limit:

@@ -45,10 +45,9 @@ from crawler2d.reading.parts import (
     plugin_of,
     shape_of,
     solid,
-    warn_of_gravity,
     warn_of_tilt,
-    warn_of_weightless,
 )
+from crawler2d.reading.unused import warn_of_gravity, warn_of_unmoved
 
 __all__ = ["MODEL", "SCOPE", "read_sdf"]
 
@@ -298,7 +297,7 @@ class _Model:
     def tree(self) -> Tree:
         placed, _ = _pose_of(self.model, [])
         warn_of_tilt(f"{self.model.at}: pose", placed, "model", self.warnings)
-        warn_of_weightless(self.model, self.warnings)
+        warn_of_unmoved(self.model, self.warnings)
         joints = {}
         ends = []
         for part in self.parts("joint"):

@@ -43,8 +43,8 @@ from crawler2d.reading.parts import (
     order_links,
     plugin_of,
     shape_of,
-    warn_of_weightless,
 )
+from crawler2d.reading.unused import warn_of_unmoved
 
 __all__ = ["read_urdf"]
 
@@ -91,7 +91,7 @@ def read_urdf(root: Element, meshes: Meshes, *, leave_out: bool, is_bullet: bool
         }
     )
     warnings = meshes.warnings
-    warn_of_weightless(root, warnings)
+    warn_of_unmoved(root, warnings)
     warnings += [
         (each.at, each.text, _FIXED)
         for block in root.all("gazebo")
