@@ -267,3 +267,7 @@ def test_slip_in_proportion_to_the_force_gets_a_warning_where_it_is_along_the_tr
     text = urdf(WHEELS).replace("</robot>", f"{plugin}</robot>")
     (warning,) = [each for each in read(tmp_path, text).warnings if "slip" in each]
     assert warning.endswith("slips at the limit of friction alone, got 0.02 m/s per N")
+    surface = f"<surface><friction>{ode.format(0.01, 0)}</friction></surface>"
+    blocks = f'<gazebo reference="left_front"><collision>{surface}</collision></gazebo></robot>'
+    warnings = read(tmp_path, urdf(WHEELS).replace("</robot>", blocks)).warnings
+    assert [each for each in warnings if each.endswith("alone, got 0.01 m/s per N")]

@@ -132,6 +132,41 @@ def test_blocks_of_gazebo_for_one_link_add_up_and_the_later_counts(tmp_path: Pat
     assert {(each.first, each.second) for each in found if each} == {(0.3, 0.2)}
 
 
+def in_collision(mu: str) -> str:
+    """The friction of an extension as SDF has it."""
+    ode = f"<ode><mu>{mu}</mu><mu2>{mu}</mu2></ode>"
+    return f"<collision><surface><friction>{ode}</friction></surface></collision>"
+
+
+@pytest.mark.parametrize(
+    ("blocks", "friction"),
+    [
+        ((in_collision("0.4"),), 0.4),
+        (("<mu1>0.6</mu1><mu2>0.6</mu2>", in_collision("0.4")), 0.4),
+        (("<mu1>0.6</mu1><mu2>0.6</mu2>", "<collision><surface/></collision>"), 1.0),
+        ((in_collision("0.4"), "<mu1>0.6</mu1><mu2>0.6</mu2>"), 0.6),
+    ],
+)
+def test_friction_in_the_collision_of_an_extension_counts(
+    tmp_path: Path, blocks: tuple[str, ...], friction: float
+) -> None:
+    text = "".join(
+        f'<gazebo reference="{side}_{end}">{block}</gazebo>'
+        for side, _ in SIDES
+        for end in ("front", "rear")
+        for block in blocks
+    )
+    assert read(tmp_path, urdf(WHEELS, text)).friction == friction
+
+
+def test_friction_of_a_link_that_is_not_there_gets_a_warning(tmp_path: Path) -> None:
+    slick = '<gazebo reference="left_fornt">{}</gazebo>'
+    for block, count in (("<mu1>0.2</mu1>", 1), (in_collision("0.2"), 1), ("<kp>1e6</kp>", 0)):
+        warnings = read(tmp_path, urdf(WHEELS, slick.format(block))).warnings
+        found = [each for each in warnings if "no link has this name, got left_fornt" in each]
+        assert len(found) == count
+
+
 def test_friction_above_that_of_the_ground_is_the_grounds_in_gazebo(tmp_path: Path) -> None:
     rough = '<gazebo reference="left_front"><mu1>2</mu1><mu2>3</mu2></gazebo>'
     assert read(tmp_path, urdf(WHEELS, rough)).friction == 1.0

@@ -47,6 +47,7 @@ __all__ = [
     "order_links",
     "plugin_of",
     "shape_of",
+    "slips_of",
     "solid",
     "warn_of_tilt",
     "wheel_torques",
@@ -377,6 +378,14 @@ def coefficient(element: Element | None, owner: Element) -> Limit:
     if value < 0.0:
         element.refuse(value, "must be >= 0")
     return value, element.where
+
+
+def slips_of(slips: Sequence[Element | None], at: Where) -> tuple[Limit, ...]:
+    """[m/s per N] Read the slip along both directions of a surface; empty if neither is given."""
+    return tuple(
+        (0.0, at) if each is None else (real(each, each.text), each.where)
+        for each in (slips if any(slips) else ())
+    )
 
 
 def order_links(

@@ -44,6 +44,7 @@ from crawler2d.reading.parts import (
     order_links,
     plugin_of,
     shape_of,
+    slips_of,
     solid,
     warn_of_tilt,
 )
@@ -500,17 +501,13 @@ class _Model:
                 frame = fdir1.attributes.get(f"{prefix}:expressed_in", "")
                 pose = self.frames.of(scope + frame, fdir1) if frame else pose
             direction = unit(pose.along(fdir1.reals(3)))
-        slips = [ode.only(name) for name in ("slip1", "slip2")]
         return Friction(
             first=first,
             second=second,
             direction=direction,
             first_at=first_at,
             second_at=second_at,
-            slips=tuple(
-                (0.0, ode.where) if each is None else (real(each, each.text), each.where)
-                for each in (slips if any(slips) else ())
-            ),
+            slips=slips_of([ode.only(name) for name in ("slip1", "slip2")], ode.where),
         )
 
     def joint(self, part: _Part, parent: str, child: str, *, carries: bool) -> Joint:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections import defaultdict
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from contextlib import suppress
 from dataclasses import replace
 from functools import partial
@@ -25,7 +25,7 @@ from crawler2d.model_tree import (
     from_rpy,
     unit,
 )
-from crawler2d.reading.log import ReadingWarning
+from crawler2d.reading.log import ReadingWarning, list_names
 from crawler2d.reading.meshes import Meshes
 from crawler2d.reading.parsing import Element, real
 from crawler2d.reading.parts import (
@@ -43,6 +43,7 @@ from crawler2d.reading.parts import (
     order_links,
     plugin_of,
     shape_of,
+    slips_of,
 )
 from crawler2d.reading.unused import warn_of_unmoved
 
@@ -50,6 +51,9 @@ __all__ = ["read_urdf"]
 
 _FIXED = "is left out: it fixes the robot to the world, but the robot has to drive"
 _WORLD = "world"  # A joint from an empty link of this name fixes a robot to the world.
+
+_SURFACE = {"mu1": "mu", "mu2": "mu2", "fdir1": "fdir1", "slip1": "slip1", "slip2": "slip2"}
+"""Elements about the friction of a surface: in an extension of URDF, and in SDF."""
 
 # The interface of ros_control, with or without its package, and that of ros2_control.
 _POSITION = re.compile(r"^(.*/)?(PositionJointInterface|position)$")
@@ -125,7 +129,7 @@ def read_urdf(root: Element, meshes: Meshes, *, leave_out: bool, is_bullet: bool
         remedy='; missing="leave_out" leaves out joints of links that are missing on purpose',
     )
     by_child = {each: (element, parent) for element, _, parent, each in ends if each in order}
-    frictions = _frictions(root, is_bullet=is_bullet)
+    frictions = _frictions(root, elements, warnings, is_bullet=is_bullet)
     poses: dict[str, Pose] = {}
     links = []
     for name in order:
@@ -170,7 +174,9 @@ def read_urdf(root: Element, meshes: Meshes, *, leave_out: bool, is_bullet: bool
     )
 
 
-def _frictions(root: Element, *, is_bullet: bool) -> dict[str, Friction]:
+def _frictions(
+    root: Element, names: Collection[str], warnings: list[ReadingWarning], *, is_bullet: bool
+) -> dict[str, Friction]:
     """Return the friction that extensions give to links; directions are in collision frames."""
     frictions: dict[str, Friction] = {}
     for link in root.all("link"):
@@ -179,25 +185,52 @@ def _frictions(root: Element, *, is_bullet: bool) -> dict[str, Friction]:
             value, at = coefficient(lateral, link)
             both = Friction(first=value, second=value, first_at=at, second_at=at)
             frictions[link.attribute("name")] = both
+    astray: dict[str, Element] = {}
     blocks = defaultdict[str, list[Element]](list)
     for block in () if is_bullet else root.all("gazebo"):
         blocks[block.attributes.get("reference", "")].append(block)
     for name, of_link in blocks.items():
-        # A later block replaces what it has of an earlier one.
-        mu1, mu2, fdir1 = (
-            next(filter(None, (block.only(tag) for block in reversed(of_link))), None)
-            for tag in ("mu1", "mu2", "fdir1")
-        )
-        if not name or mu1 is mu2 is None:
+        stated = _stated(of_link)
+        mu1, mu2, fdir1, *slips = (stated.get(tag) for tag in _SURFACE)
+        if not name or not stated.keys() - {"fdir1"}:
+            continue
+        if name not in names:
+            astray[name] = of_link[0]
             continue
         (first, first_at), (second, second_at) = (coefficient(mu, of_link[0]) for mu in (mu1, mu2))
         direction = None
         if fdir1 is not None:
             direction = unit(fdir1.reals(3, "value" if "value" in fdir1.attributes else None))
         frictions[name] = Friction(
-            first=first, second=second, direction=direction, first_at=first_at, second_at=second_at
+            first=first,
+            second=second,
+            direction=direction,
+            first_at=first_at,
+            second_at=second_at,
+            slips=slips_of(slips, of_link[0].where),
         )
+    if astray:
+        path = f"{next(iter(astray.values())).at}@reference"
+        reason = "has friction that has no effect: no link has this name"
+        warnings.append((path, list_names(list(astray)), reason))
     return frictions
+
+
+def _stated(blocks: list[Element]) -> dict[str, Element]:
+    """Return what the extensions of a link say of its friction.
+
+    As in Gazebo, a later block replaces what it has of an earlier one, and the surface in a
+    ``<collision>`` replaces all that was stated before.
+    """
+    stated: dict[str, Element] = {}
+    for block in blocks:
+        for surface in (each for own in block.all("collision") for each in own.all("surface")):
+            ode = surface.only("friction/ode")
+            inner = {} if ode is None else {tag: ode.only(word) for tag, word in _SURFACE.items()}
+            stated = {tag: own for tag, own in inner.items() if own}
+        given = {tag: block.only(tag) for tag in ("mu1", "mu2", "fdir1")}
+        stated |= {tag: own for tag, own in given.items() if own}
+    return stated
 
 
 def _origin(element: Element, warnings: list[ReadingWarning]) -> Pose:
