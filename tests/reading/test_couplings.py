@@ -93,6 +93,61 @@ def test_wheels_of_mjcf_on_a_tendon_get_a_warning_in_plain_words(tmp_path: Path)
     assert "tendon[right_drive]" in second
 
 
+def test_a_joint_of_mjcf_that_an_equation_stops_gets_a_warning(tmp_path: Path) -> None:
+    pytest.importorskip("mujoco")
+    stopped = '<equality><joint joint1="left_middle_joint"/></equality>'
+    (found,) = warned(read(tmp_path, joined(stopped), "cart.xml"), "equality[left_middle_joint]")
+    assert found.endswith("got left_middle_joint")
+
+
+@pytest.mark.parametrize(
+    ("equation", "told"),
+    [
+        ('<weld body1="hull"/>', "fixes the robot to the world, but the robot has to drive, got h"),
+        ('<weld site1="stake" site2="hook"/>', "fixes the robot to the world"),
+        (
+            '<connect body1="left_rear" body2="hull" anchor="0 0 0"/>',
+            "here joints alone hold these bodies, got left_rear, hull",
+        ),
+        ('<weld body1="hull" active="false"/>', ""),
+        ('<weld body1="crate"/>', ""),
+    ],
+)
+def test_bodies_of_mjcf_that_an_equation_holds_get_a_warning(
+    tmp_path: Path, equation: str, told: str
+) -> None:
+    pytest.importorskip("mujoco")
+    text = joined(f"<equality>{equation}</equality>")
+    text = text.replace("<freejoint/>", '<freejoint/><site name="hook"/>', 1)
+    crate = '<site name="stake"/><body name="crate" pos="9 0 1"><freejoint/><geom size="1"/></body>'
+    text = text.replace("<worldbody>", f"<worldbody>{crate}")
+    found = warned(read(tmp_path, text, "cart.xml", model="hull"), "equality[")
+    assert len(found) == bool(told)
+    assert all(told in each for each in found)
+
+
+@pytest.mark.parametrize(
+    "figure", ['stiffness="9"', 'damping="1"', 'frictionloss="1"', 'range="-1 1"']
+)
+def test_a_passive_tendon_of_mjcf_gets_a_warning(tmp_path: Path, figure: str) -> None:
+    pytest.importorskip("mujoco")
+    joint = '<joint joint="left_rear_joint" coef="1"/>'
+    text = joined(f'<tendon><fixed name="brake" {figure}>{joint}</fixed></tendon>')
+    (found,) = warned(read(tmp_path, text, "cart.xml"), "tendon[brake] is left out")
+    assert found.endswith("its spring, damper, friction or limit, got left_rear_joint")
+
+
+def test_an_actuator_of_mjcf_that_pushes_a_body_gets_a_warning(tmp_path: Path) -> None:
+    pytest.importorskip("mujoco")
+    text = (FILES / "cart.xml").read_text()
+    magnet = '<adhesion name="magnet" body="hull" ctrlrange="0 1" gain="50"/>'
+    fan = '<motor name="fan" site="hook" gear="1 0 0 0 0 0"/>'
+    text = text.replace("</actuator>", f"{magnet}{fan}</actuator>")
+    text = text.replace("<freejoint/>", '<freejoint/><site name="hook"/>', 1)
+    found = warned(read(tmp_path, text, "cart.xml"), "here motors turn joints, and push nothing")
+    assert [each.rpartition(" ")[2] for each in found] == ["hull", "hook"]
+
+
 @pytest.mark.parametrize(
     ("name", "place", "kept"),
     [

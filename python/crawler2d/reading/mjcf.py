@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import os
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from pathlib import PurePath
 from typing import Any
 
@@ -58,10 +58,18 @@ _JOINTS = {0: "free", 1: "ball", 2: "slide", 3: "hinge"}
 _SHAPES = {0: "plane", 1: "hfield", 2: "sphere", 3: "capsule", 4: "ellipsoid", 5: "cylinder"}
 _SHAPES |= {6: "box", 7: "mesh"}
 _SHARED = "is left out: these joints are read as without the motor that pulls at it"
-_ON_JOINTS = (0, 1)  # the numbers of transmissions to a joint, not a tendon, site or body
-_ON_TENDON = 3  # and to a tendon
+_PASSIVE = "is left out: these joints are read as without its spring, damper, friction or limit"
+_HELD = "is left out: it fixes the robot to the world, but the robot has to drive"
+_CLOSED = "is left out: here joints alone hold these bodies"
+_ELSEWHERE = "is left out: here motors turn joints, and push nothing else"
+_ON_JOINTS = (0, 1)  # the numbers of transmissions to a joint
+_ON_TENDON = 3  # to a tendon
+_ON_SITES = (2, 4)  # and to a site
 _OF_JOINT = 1  # the number of what a fixed tendon runs over
-_BY_JOINTS = 2  # the number of equations between joints
+_BY_BODIES = (0, 1)  # the numbers of equations that hold bodies or sites
+_BY_JOINTS = 2  # and of those of joints
+_OF_SITES = 6  # the number of sites among objects
+_OF_TENDONS = ("stiffness", "damping", "frictionloss", "limited")  # what acts at a passive one
 _FLAGS = ("gravity", "contact", "actuation")  # can be disabled, but not here
 _INTEGRATOR = 1  # the number of the dynamics of an actuator whose activation is a position
 
@@ -181,6 +189,7 @@ class _Model:
         names = [(self.bodies[n]["name"], self.where(self.bodies[n])) for n in poses]
         ends = [(joint.name, joint.parent, joint.child, joint.at) for joint in joints.values()]
         order = order_links(names, ends, self.at, self.meshes.warnings)
+        self.warn_of_ties(poses)
         links = [self.link(number, pose) for number, pose in poses.items()]
         return Tree(
             name=self.answer["name"],
@@ -199,7 +208,7 @@ class _Model:
                     joints=tuple(each["joints"]),
                     name=f"{each['kind']}[{each['name']}]",
                     value=list_names(each["joints"]),
-                    reason=_SHARED if each["kind"] == "tendon" else ON_ITS_OWN,
+                    reason=each["reason"],
                     at=self.where(each),
                 )
                 for each in self.answer["couplings"]
@@ -207,6 +216,19 @@ class _Model:
             floors=tuple(self.floors()),
             at=self.at,
         )
+
+    def warn_of_ties(self, bodies: Collection[int]) -> None:
+        """Warn of equations and actuators that act on the robot's bodies, not on joints."""
+        for each in self.answer["holds"]:
+            held = [body in bodies for body in each["bodies"]]
+            if any(held):
+                path = f"{self.where(each)}: equality[{each['name']}]"
+                reason = _CLOSED if all(held) else _HELD
+                self.meshes.warnings.append((path, list_names(each["ends"]), reason))
+        for motor in self.answer["motors"]:
+            if motor["body"] in bodies:
+                path = f"{self.where(motor)}: actuator[{motor['name']}]"
+                self.meshes.warnings.append((path, motor["target"], _ELSEWHERE))
 
     def floors(self) -> list[Limit]:
         """[-] Return the friction of the ground: of planes and height maps, or of all that stands.
@@ -419,6 +441,7 @@ def _compile(mujoco: Any, *, text: str, file: str, files: Item) -> Item:
         "lacking": [{"body": body.id, **geom} for body, geom, _ in lacking],
         **{name: [part(model, each) for each in items] for name, (part, items) in parts.items()},
         "couplings": [*_tendons(model, spec), *_equations(spec)],
+        "holds": list(_holds(model, spec)),
     }
 
 
@@ -552,11 +575,15 @@ def _motor(model: Any, actuator: Any) -> Item:
     # A servo of speed holds control / gear, times its gain by that of its bias; one of position has
     # a bias on the position, too, and holds a speed if it integrates its control.
     is_integrator = int(model.actuator_dyntype[i]) == _INTEGRATOR
+    kind, on = int(model.actuator_trntype[i]), int(model.actuator_trnid[i, 0])
     is_of_speed = not is_integrator and bias[2] < 0.0 and bias[1] == 0.0
     held = float(bias[1] if is_integrator else bias[2])
     has_speed = (is_of_speed or (is_integrator and held < 0.0)) and most is not None and gear > 0.0
     return {
-        "joint": actuator.target if int(model.actuator_trntype[i]) in _ON_JOINTS else "",
+        "name": actuator.name,
+        "target": actuator.target,
+        "joint": actuator.target if kind in _ON_JOINTS else "",
+        "body": _body_under(model, kind, on),
         "effort": min(limits) * gear if limits else None,
         "damping": float(model.actuator_damping[i]) * gear**2,
         "armature": float(model.actuator_armature[i]) * gear**2,
@@ -567,28 +594,51 @@ def _motor(model: Any, actuator: Any) -> Item:
     }
 
 
+def _body_under(model: Any, kind: int, number: int) -> int | None:
+    """Return the body on which an actuator acts directly; None for one of a joint or tendon."""
+    if kind in _ON_SITES:
+        return int(model.site_bodyid[number])
+    return None if kind in (*_ON_JOINTS, _ON_TENDON) else number
+
+
 def _tendons(model: Any, spec: Any) -> Iterator[Item]:
-    """Yield the fixed tendons that have an actuator, with the joints that each runs over."""
+    """Yield the fixed tendons that pull at joints: those with an actuator, and passive ones."""
     names = {joint.id: joint.name or f"joint {joint.id}" for joint in spec.joints}
+    over: dict[int, list[str]] = {}
+    for tendon in spec.tendons:
+        first, count = int(model.tendon_adr[tendon.id]), int(model.tendon_num[tendon.id])
+        wraps = [i for i in range(first, first + count) if model.wrap_type[i] == _OF_JOINT]
+        over[tendon.id] = [names[int(model.wrap_objid[i])] for i in wraps]
+        figures = (getattr(model, f"tendon_{each}") for each in _OF_TENDONS)
+        if any(np.any(figure[tendon.id]) for figure in figures):
+            what = {"kind": "tendon", "name": tendon.name, "line": _line(tendon)}
+            yield {**what, "joints": over[tendon.id], "reason": _PASSIVE}
     for actuator in spec.actuators:
-        kind, number = int(model.actuator_trntype[actuator.id]), actuator.id
-        if kind == _ON_TENDON:
-            tendon = int(model.actuator_trnid[number, 0])
-            first, count = int(model.tendon_adr[tendon]), int(model.tendon_num[tendon])
-            over = range(first, first + count)
-            joints = [
-                names[int(model.wrap_objid[i])] for i in over if model.wrap_type[i] == _OF_JOINT
-            ]
+        if int(model.actuator_trntype[actuator.id]) == _ON_TENDON:
+            number = int(model.actuator_trnid[actuator.id, 0])
             what = {"kind": "tendon", "name": actuator.target, "line": _line(actuator)}
-            yield {**what, "joints": joints}
+            yield {**what, "joints": over[number], "reason": _SHARED}
 
 
 def _equations(spec: Any) -> Iterator[Item]:
-    """Yield the equations between two joints, of which the first follows the second."""
+    """Yield the equations of a joint, which follows another one or stands still."""
     for each in spec.equalities:
-        if int(each.type) == _BY_JOINTS and each.active and each.name2:
+        if int(each.type) == _BY_JOINTS and each.active:
             what = {"kind": "equality", "name": each.name or each.name1, "line": _line(each)}
-            yield {**what, "joints": [each.name1, each.name2]}
+            joints = [name for name in (each.name1, each.name2) if name]
+            yield {**what, "joints": joints, "reason": ON_ITS_OWN}
+
+
+def _holds(model: Any, spec: Any) -> Iterator[Item]:
+    """Yield the equations that hold two bodies together, with the bodies."""
+    for each in spec.equalities:
+        if int(each.type) in _BY_BODIES and each.active:
+            bodies = [int(model.eq_obj1id[each.id]), int(model.eq_obj2id[each.id])]
+            if int(model.eq_objtype[each.id]) == _OF_SITES:
+                bodies = [int(model.site_bodyid[site]) for site in bodies]
+            ends = [each.name1 or "world", each.name2 or "world"]
+            what = {"name": each.name or ends[0], "line": _line(each)}
+            yield {**what, "bodies": bodies, "ends": ends}
 
 
 if __name__ == "__main__":
