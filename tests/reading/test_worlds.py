@@ -192,3 +192,45 @@ def test_a_link_that_no_force_moves_gets_a_warning(
         found = [each for each in reading.warnings if "kinematic is not used" in each]
         assert len(found) == count
         assert all(each.endswith("got 1 that no force moves") for each in found)
+
+
+@pytest.mark.parametrize(
+    ("shape", "contact", "is_belly"),
+    [
+        ("", "", True),
+        (' contype="2" conaffinity="2"', "", False),
+        (' contype="2" conaffinity="1"', "", True),
+        ("", '<exclude body1="world" body2="hull"/>', False),
+        ("", '<exclude body1="hull" body2="left_rear"/>', True),
+    ],
+)
+def test_a_geom_of_mujoco_that_passes_through_the_ground_is_no_belly(
+    tmp_path: Path, shape: str, contact: str, is_belly: bool
+) -> None:
+    pytest.importorskip("mujoco")
+    text = (FILES / "cart.xml").read_text(encoding="utf-8")
+    box = '<geom type="box"'
+    assert text.count(box) == 1
+    text = text.replace(box, box + shape)
+    text = text.replace("<actuator>", f"<contact>{contact}</contact><actuator>")
+    assert (read(tmp_path, text, "cart.xml").robot.belly is not None) == is_belly
+
+
+def test_bits_of_mujoco_count_only_beside_a_ground(tmp_path: Path) -> None:
+    pytest.importorskip("mujoco")
+    text = (FILES / "cart.xml").read_text(encoding="utf-8")
+    alone = text.replace('<geom type="plane" size="5 5 0.1"/>', "")
+    assert alone != text
+    bits = '<geom friction="0.75" contype="4" conaffinity="8"/>'
+    masked = alone.replace('<geom friction="0.75"/>', bits)
+    assert read(tmp_path, masked, "cart.xml").robot == read(tmp_path, alone, "cart.xml").robot
+
+
+def test_a_margin_of_geoms_of_mujoco_gets_a_warning_where_it_is_wide(tmp_path: Path) -> None:
+    pytest.importorskip("mujoco")
+    text = (FILES / "cart.xml").read_text(encoding="utf-8")
+    for margin, count in (("0.02", 1), ("0.001", 0)):
+        wide = text.replace('<geom friction="0.75"', f'<geom friction="0.75" margin="{margin}"')
+        warnings = read(tmp_path, wide, "cart.xml").warnings
+        found = [each for each in warnings if "they stand off the ground by as much" in each]
+        assert len(found) == count

@@ -10,6 +10,7 @@ import math
 import os
 import re
 from collections.abc import Callable, Collection, Iterator
+from functools import partial
 from pathlib import PurePath
 from typing import Any
 
@@ -57,6 +58,8 @@ _JOINTS = {0: "free", 1: "ball", 2: "slide", 3: "hinge"}
 
 _SHAPES = {0: "plane", 1: "hfield", 2: "sphere", 3: "capsule", 4: "ellipsoid", 5: "cylinder"}
 _SHAPES |= {6: "box", 7: "mesh"}
+_GROUND = (0, 1)  # planes and height maps
+_THICK = 0.001  # [m] Smaller margins are within the usual tolerance between the sides.
 _SHARED = "is left out: these joints are read as without the motor that pulls at it"
 _PASSIVE = "is left out: these joints are read as without its spring, damper, friction or limit"
 _HELD = "is left out: it fixes the robot to the world, but the robot has to drive"
@@ -225,6 +228,17 @@ class _Model:
                 path = f"{self.where(each)}: equality[{each['name']}]"
                 reason = _CLOSED if all(held) else _HELD
                 self.meshes.warnings.append((path, list_names(each["ends"]), reason))
+        wide = [
+            each
+            for each in self.answer["shapes"]
+            if each["body"] in bodies and each["collides"] and each["margin"] > _THICK
+        ]
+        if wide:
+            most = max(wide, key=lambda each: each["margin"])
+            path = f"{self.where(most)}: geom[{most['name']}]@margin"
+            value = f"up to {most['margin']:g} m, of {len(wide)} geoms"
+            reason = "is not used: in MuJoCo they stand off the ground by as much"
+            self.meshes.warnings.append((path, value, reason))
         for motor in self.answer["motors"]:
             if motor["body"] in bodies:
                 path = f"{self.where(motor)}: actuator[{motor['name']}]"
@@ -430,10 +444,10 @@ def _compile(mujoco: Any, *, text: str, file: str, files: Item) -> Item:
         line = re.search(r"line (\d+)", said)
         at = f"{file}:{line[1]}" if line else file
         raise ScenarioError(at, said, "must be a model that MuJoCo compiles") from None
-    parts = {
+    parts: dict[str, tuple[Callable[[Any, Any], Item], Any]] = {
         "bodies": (_body, spec.bodies),
         "joints": (_joint, spec.joints),
-        "shapes": (_shape, spec.geoms),
+        "shapes": (partial(_shape, _ground(model)), spec.geoms),
         "motors": (_motor, spec.actuators),
     }
     return {
@@ -532,14 +546,14 @@ def _joint(model: Any, joint: Any) -> Item:
     }
 
 
-def _shape(model: Any, geom: Any) -> Item:
+def _shape(ground: set[tuple[int, int]], model: Any, geom: Any) -> Item:
     i = geom.id
     kind = _SHAPES.get(int(model.geom_type[i]), "unknown")
-    collides = bool(model.geom_contype[i] or model.geom_conaffinity[i])
     # A contact of dimension 1 has no friction. The ground has dimension 3, and the larger one
     # applies, unless the geom has the higher priority.
     priority = int(model.geom_priority[i])
     is_smooth = priority > 0 and int(model.geom_condim[i]) == 1
+    collides = _touches_ground(model, i, ground)
     points = None
     if kind == "mesh" and collides:
         mesh = int(model.geom_dataid[i])
@@ -556,9 +570,32 @@ def _shape(model: Any, geom: Any) -> Item:
         "friction": 0.0 if is_smooth else float(model.geom_friction[i, 0]),
         "priority": priority,
         "collides": collides,
+        "margin": float(model.geom_margin[i]),
         "surface_velocity": geom.surfacevel.tolist() if hasattr(geom, "surfacevel") else [0.0] * 6,
         "line": _line(geom),
     }
+
+
+def _ground(model: Any) -> set[tuple[int, int]]:
+    """Return the bits of the ground: of planes and height maps, or else of all that stands."""
+    still = [i for i in range(model.ngeom) if model.geom_bodyid[i] == 0 and any(_bits(model, i))]
+    ground = [i for i in still if int(model.geom_type[i]) in _GROUND] or still
+    return {_bits(model, each) for each in ground}
+
+
+def _touches_ground(model: Any, geom: int, ground: set[tuple[int, int]]) -> bool:
+    """Whether a geom collides with the ground of the file, or with anything if it has none."""
+    own, body = _bits(model, geom), int(model.geom_bodyid[geom])
+    if body == 0 or not ground:
+        return any(own)
+    if body in model.exclude_signature:  # of a pair with the world, whose number is 0
+        return False
+    return any(own[0] & other[1] or own[1] & other[0] for other in ground)
+
+
+def _bits(model: Any, geom: int) -> tuple[int, int]:
+    """Return the bits that say with which others a geom collides."""
+    return int(model.geom_contype[geom]), int(model.geom_conaffinity[geom])
 
 
 def _motor(model: Any, actuator: Any) -> Item:
