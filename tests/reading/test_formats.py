@@ -202,6 +202,7 @@ def sdf(version: str, axis: str) -> str:
         ("1.6", "<axis><xyz>0 0 1</xyz><use_parent_model_frame>0</use_parent_model_frame></axis>"),
         ("1.7", '<axis><xyz expressed_in="__model__">0 1 0</xyz></axis>'),
         ("1.11", "<axis><xyz>0 0 1</xyz></axis>"),
+        ("1.12", "<axis><xyz>0 0 1</xyz></axis>"),
     ],
 )
 def test_the_frame_of_an_axis_depends_on_the_sdf_version(
@@ -210,10 +211,28 @@ def test_the_frame_of_an_axis_depends_on_the_sdf_version(
     assert read(tmp_path, sdf(version, axis), "m.sdf").robot.track == c2d.LineOfWheels(2)
 
 
-@pytest.mark.parametrize("version", ["1.3", "1.12", "2.0", "", "1.6.1"])
+@pytest.mark.parametrize("version", ["1.3", "1.13", "2.0", "", "1.6.1"])
 def test_other_versions_of_sdf_are_refused(tmp_path: Path, version: str) -> None:
-    with refusing(SAID, r"@version must be of version 1.4 to 1.11"):
+    with refusing(SAID, r"@version must be of version 1.4 to 1.12"):
         read(tmp_path, sdf(version, ""), "m.sdf")
+
+
+def test_a_frame_of_a_pose_that_has_no_meaning_gets_a_warning(tmp_path: Path) -> None:
+    text = (FILES / "cart.sdf").read_text()
+    for frame, count in (("left_rear", 1), ("", 0)):
+        other = text.replace("<pose>", f'<pose frame="{frame}">', 1)
+        assert other != text
+        found = [each for each in read(tmp_path, other, "c.sdf").warnings if "pose@frame" in each]
+        assert len(found) == count
+        assert all(each.endswith(f"from SDF 1.7 on relative_to has, got {frame}") for each in found)
+
+
+def test_a_joint_of_a_world_gets_a_warning(tmp_path: Path) -> None:
+    model = (FILES / "cart.sdf").read_text().partition("<model")[2].rpartition("</model>")[0]
+    joint = "<joint name='j' type='fixed'><parent>world</parent><child>cart</child></joint>"
+    text = f'<sdf version="1.12"><world name="w">{joint}<model{model}</model></world></sdf>'
+    found = read(tmp_path, text, "w.sdf").warnings
+    assert [each for each in found if each.endswith("are not joined to others, got world to cart")]
 
 
 def test_of_several_models_in_a_world_one_must_be_named(tmp_path: Path) -> None:

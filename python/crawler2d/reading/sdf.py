@@ -1,4 +1,4 @@
-"""Read one model of an SDF 1.4 to 1.11 file, by itself or in a world, as a neutral tree."""
+"""Read one model of an SDF 1.4 to 1.12 file, by itself or in a world, as a neutral tree."""
 
 from __future__ import annotations
 
@@ -146,9 +146,9 @@ def read_sdf(root: Element, model: str | None, meshes: Meshes) -> Tree:
     version = root.attributes.get("version", "")
     match = re.fullmatch(r"1\.(\d{1,2})", version, re.ASCII)
     minor = int(match[1]) if match else 0
-    if not 4 <= minor <= 11:
+    if not 4 <= minor <= 12:
         cure = '"gz sdf -p FILE" rewrites a file of an older version'
-        root.refuse(version or "none", f"must be of version 1.4 to 1.11; {cure}", "@version")
+        root.refuse(version or "none", f"must be of version 1.4 to 1.12; {cure}", "@version")
     chosen = _choose(root, model)
     meshes.read(
         {
@@ -165,6 +165,10 @@ def read_sdf(root: Element, model: str | None, meshes: Meshes) -> Tree:
         return _Model(chosen, minor, meshes).tree()
     for gravity in world.all("gravity"):
         warn_of_gravity(gravity, None, meshes.warnings)
+    for joint in world.all("joint"):
+        ends = (each.text for tag in ("parent", "child") for each in joint.all(tag))
+        reason = "is left out: here models are not joined to others"
+        meshes.warnings.append((joint.at, " to ".join(ends), reason))
     return replace(_Model(chosen, minor, meshes).tree(), floors=tuple(_floors(world)))
 
 
@@ -193,6 +197,9 @@ def _pose_of(element: Element, warnings: list[ReadingWarning]) -> tuple[Pose, st
     if pose is None:
         return Pose(), ""
     relative = pose.attributes.get("relative_to", "")
+    if frame := pose.attributes.get("frame", ""):
+        reason = "is left out: it has no meaning; from SDF 1.7 on relative_to has"
+        warnings.append((f"{pose.at}@frame", frame, reason))
     if not pose.text:
         return Pose(), relative
     rotation = pose.attributes.get("rotation_format", "euler_rpy")
