@@ -240,6 +240,31 @@ def test_an_effort_limit_of_0_is_none_but_in_gz(tmp_path: Path) -> None:
     assert found.message.startswith("4 of 4 wheels have no effort limit")
 
 
+def test_a_speed_limit_of_0_is_found_where_the_engine_keeps_to_it(tmp_path: Path) -> None:
+    zero = '<limit effort="5" velocity="0"/>'
+    text = urdf(pair("front", 0.2, limit=zero), pair("rear", -0.2, limit=zero), MOTORS)
+    for engine, name in (("gz", "gz-sim"), ("isaac", "Isaac Sim")):
+        (found,) = of_text(tmp_path, text, "speed", engine=engine)
+        told = f"4 of 4 wheels have a speed limit of 0: they do not turn in {name}; here they drive"
+        assert found.message == f"{told} at 1 m/s, an estimate"
+    assert of_text(tmp_path, text, "speed", engine="mujoco") == []
+    some = urdf(pair("front", 0.2, limit=zero), pair("rear", -0.2), MOTORS)
+    (found,) = of_text(tmp_path, some, "speed")
+    assert found.message.startswith("2 of 4 wheels")
+    assert found.message.endswith("here they drive at 0.8 m/s, as the others do")
+
+
+def test_a_chassis_without_mass_is_found(tmp_path: Path) -> None:
+    text = urdf(WHEELS, MOTORS)
+    hull = f'<inertial><mass value="8"/>{TENSOR}</inertial>'
+    assert hull in text
+    bare = text.replace(hull, "")
+    (found,) = of_text(tmp_path, bare, "massless")
+    assert found.message.startswith("the chassis has no mass (hull): is an <inertial> missing?")
+    battery = link("battery", 'type="fixed">')  # lies in it
+    assert of_text(tmp_path, bare.replace("</robot>", f"{battery}</robot>"), "massless") == []
+
+
 def test_a_wheel_that_rolls_freely_needs_no_limit_of_effort(tmp_path: Path) -> None:
     rear = "".join(BLOCK.format(name=name) for name in NAMES[1::2])
     text = urdf(pair("front", 0.2, limit=""), pair("rear", -0.2), rear)

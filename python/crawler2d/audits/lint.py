@@ -16,6 +16,7 @@ from crawler2d.model_tree import Joint, Link, Where
 from crawler2d.parameters.flippers import reach_of
 from crawler2d.parameters.robot import Robot
 from crawler2d.parameters.track import ForceTrack, HybridWheels, LineOfWheels
+from crawler2d.reading.engines import ENGINES
 from crawler2d.reading.loading import size_of
 from crawler2d.reading.log import lines, list_names
 from crawler2d.reading.parts import wheel_torques
@@ -366,6 +367,21 @@ def _no_effort_limit(reading: Reading) -> Iterator[_Break]:
         yield _Break(message, lines([joint.effort_at for joint in without]))
 
 
+def _no_speed(reading: Reading) -> Iterator[_Break]:
+    """Find wheels that may not turn, in engines that keep to their limit of speed."""
+    laws, wheels = ENGINES[reading.engine], [joint for _, joint in _wheel_links(reading)]
+    still = [joint for joint in wheels if joint.velocity == 0.0]
+    if still and "velocity" not in laws.ignored:
+        speed = reading.robot.drivetrain.max_speed
+        is_estimate = "robot.drivetrain.max_speed" in reading.sources.estimates
+        message = (
+            f"{len(still)} of {len(wheels)} wheels have a speed limit of 0: they do not turn in"
+            f" {laws.name}; here they drive at {speed:.3g} m/s,"
+            f" {'an estimate' if is_estimate else 'as the others do'}"
+        )
+        yield _Break(message, lines([joint.velocity_at for joint in still]))
+
+
 def _no_motor(reading: Reading) -> Iterator[_Break]:
     """Find wheels without a motor in the file: something external must turn them."""
     wheels = [joint for _, joint in _wheel_links(reading)]
@@ -380,19 +396,25 @@ def _no_motor(reading: Reading) -> Iterator[_Break]:
 
 
 def _massless(reading: Reading) -> Iterator[_Break]:
-    """Find wheels without mass, including everything fixed to them."""
+    """Find wheels, and a chassis, without mass, including everything fixed to them."""
     tree = reading.tree
-    carried = {joint.parent for joint in tree.joints.values() if joint.kind == "fixed"}
-    found = [
-        link for link, _ in _wheel_links(reading) if link.mass == 0.0 and link.name not in carried
-    ]
-    if found:
-        names = list_names([link.name for link in found])
-        message = (
-            f"{len(found)} wheels have no mass ({names}): is an <inertial> missing? Here they weigh"
-            " nothing"
-        )
-        yield _Break(message, lines([link.at for link in found]))
+    masses: dict[str, float] = {}  # of everything that moves as one, by its first link
+    first: dict[str, str] = {}
+    for link in tree.links:  # parents precede children
+        joint = tree.joints.get(link.name)
+        is_fixed = joint is not None and joint.is_locked
+        first[link.name] = first[joint.parent] if joint is not None and is_fixed else link.name
+        masses[first[link.name]] = masses.get(first[link.name], 0.0) + link.mass
+    wheels = [link for link, _ in _wheel_links(reading)]
+    for links, what in ((wheels, "{0} wheels have"), (tree.links[:1], "the chassis has")):
+        found = [link for link in links if masses[first[link.name]] == 0.0]
+        if found:
+            names = list_names([link.name for link in found])
+            message = (
+                f"{what.format(len(found))} no mass ({names}): is an <inertial> missing? Here"
+                f" {'it weighs' if links is not wheels else 'they weigh'} nothing"
+            )
+            yield _Break(message, lines([link.at for link in found]))
 
 
 def _balance(reading: Reading) -> Iterator[_Break]:
@@ -518,7 +540,7 @@ RULES = (
         file=_impossible_inertia,
         stated=("robot.moment_of_inertia",),
     ),
-    Rule("massless", "error", "Every wheel has a mass.", file=_massless),
+    Rule("massless", "error", "Wheels and chassis have a mass.", file=_massless),
     Rule(
         "placeholder",
         "warning",
@@ -540,6 +562,7 @@ RULES = (
         file=_no_effort_limit,
         stated=("robot.drivetrain.max_torque",),
     ),
+    Rule("speed", "warning", "Wheels may turn.", file=_no_speed),
     Rule("not driven", "error", "Every wheel has a motor.", robot=_pushed, file=_no_motor),
     Rule(
         "opposed",
