@@ -259,17 +259,26 @@ def test_xacro_takes_arguments(tmp_path: Path) -> None:
 
 
 def test_arguments_that_no_file_has_get_a_warning(tmp_path: Path) -> None:
-    """All settings of a file are often passed together."""
+    """All settings of a file are often passed together, but then as they are in it."""
     pytest.importorskip("xacrodoc")
-    (tmp_path / "sizes.yaml").write_text("load: 3\n", encoding="utf-8")
+    (tmp_path / "sizes.yaml").write_text("load: 3\nwide: 2\n", encoding="utf-8")
     text = f'{XACRO}<xacro:arg name="mass" default="8"/>{urdf(WHEELS).partition(">")[2]}'
     text = text.replace("<link", '<xacro:if value="$(eval heavy)"/><link', 1)
-    given = {"mas": "18", "Mass": "2", "mass": "9", "load": "1", "radius": "0.2", "heavy": "0"}
+    given = {
+        "mas": "18",
+        "Mass": "2",
+        "mass": "9",
+        "load": "1",
+        "wide": "2.0",
+        "radius": "0.2",
+        "heavy": "0",
+    }
     found = read(tmp_path, text, "cart.xacro", arguments=given).warnings
     close = "it must be an argument of the model (did you mean mass?)"
     assert [each for each in found if "no effect" in each] == [
         f"arguments[mas] has no effect: {close}, got mas=18",
         f"arguments[Mass] has no effect: {close}, got Mass=2",
+        "arguments[load] has no effect: it must be an argument of the model, got load=1",
         "arguments[radius] has no effect: it must be an argument of the model, got radius=0.2",
     ]
 
@@ -277,7 +286,7 @@ def test_arguments_that_no_file_has_get_a_warning(tmp_path: Path) -> None:
 def test_arguments_that_a_format_does_not_have_get_a_warning(tmp_path: Path) -> None:
     found = read(tmp_path, urdf(WHEELS), model="cart", arguments={"mass": "9"}).warnings
     assert [each.partition(":")[0] for each in found] == [
-        "arguments have no effect",
+        "arguments has no effect",
         "model has no effect",
     ]
 

@@ -134,9 +134,9 @@ def test_settings_are_looked_up_in_a_hundred_files_of_a_megabyte_together() -> N
     large |= {"larger.yml": "b: 1\n".ljust(64_001, "#"), "text.txt": "c: 1\n"}
     settings = Settings(Folder(large))  # type: ignore[arg-type]
     # Fifteen have 960,000 bytes, and 40,000 are left.
-    assert [settings.have(f"a{n}") for n in (0, 14, 15)] == [True, True, False]
-    assert not settings.have("b")
-    assert not settings.have("c")
+    assert [settings.have(f"a{n}", f"{n}.0") for n in (0, 14, 15)] == [True, True, False]
+    assert not settings.have("b", "1")
+    assert not settings.have("c", "1")
 
 
 def test_settings_that_differ_are_named_with_their_files_and_lines() -> None:
@@ -150,8 +150,10 @@ def test_settings_that_differ_are_named_with_their_files_and_lines() -> None:
         "v": ("b.yaml", 5, "d#e"),
         "u": ("b.yaml", 6, "5"),
     }
-    assert not settings.have("z")
-    assert not settings.have("w")
+    assert not settings.have("z", "~")
+    assert not settings.have("w", "[1]")
+    assert settings.have("x", "2")
+    assert not settings.have("x", "3")
 
 
 def answered(name: str, value: Any) -> dict[str, list[dict[str, Any]]]:

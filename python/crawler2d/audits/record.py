@@ -154,6 +154,8 @@ def as_options(error: str) -> str:
     '--forward must be given'
     >>> as_options("packages={name: folder} says where each is, and tolerance= may say more")
     '--package NAME=FOLDER says where each is, and --tolerance may say more'
+    >>> as_options("  warning, other: arguments[size] has no effect")
+    '  warning, other: --argument has no effect'
     """
     for name, option in OPTIONS.items():
         value = _FOLLOWS.get(name, "")
@@ -165,7 +167,7 @@ def as_options(error: str) -> str:
             return option if given in ("", "True") else f"{option} {given}"
 
         error = re.sub(rf'(?<![\w.-]){name}=(\{{[^}}]*\}}|"[^"]*"|[\w.+-]*\w)?', advised, error)
-        error = re.sub(rf"^{name}(\[[^]]*\])?(?= )", option, error)
+        error = re.sub(rf"(^|, other: ){name}(\[[^]]*\])?(?= )", rf"\1{option}", error)
     return re.sub(r", got None(?=$|[:;] )", "", error)
 
 

@@ -205,7 +205,7 @@ def load_model(data: bytes, path: Path, options: ReadOptions) -> LoadedModel:
         )
         name = f"{name} (expanded)"
     elif options.arguments:
-        reason = "have no effect: the file is no xacro, which is named *.xacro"
+        reason = "has no effect: the file is no xacro, which is named *.xacro"
         warnings.append(("arguments", ", ".join(options.arguments), reason))
     with add_warnings(warnings):
         root = parse_xml(data, name)

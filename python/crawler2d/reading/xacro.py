@@ -135,9 +135,10 @@ class Settings:
         }
         return agreed, list(differing.values())
 
-    def have(self, name: str) -> bool:
-        """Whether there is a setting with this name."""
-        return any(name in table for table in self._tables)
+    def have(self, name: str, value: str) -> bool:
+        """Whether there is a setting with this name and value."""
+        stated = (table[name].value for table in self._tables if name in table)
+        return any(_value(each) == _value(value) for each in stated)
 
     @cached_property
     def _tables(self) -> list[dict[str, Setting]]:
@@ -410,14 +411,14 @@ def _warnings_of(
 def _useless(
     arguments: Mapping[str, str], files: XacroFiles, package: Settings
 ) -> Iterator[ReadingWarning]:
-    """Report given arguments that are neither used in the model nor among its settings.
+    """Report given arguments that are neither used in the model nor those of its settings.
 
-    Settings count, because a repository often passes all of them, used or not.
+    A repository often passes all of its settings, used or not.
     """
     used = " ".join(use for text in files.texts.values() for use in _USES.findall(text))
     for name, value in arguments.items():
         is_known = name in files.defaults or re.search(rf"(?<!\w){re.escape(name)}(?!\w)", used)
-        if not is_known and not package.have(name):
+        if not is_known and not package.have(name, value):
             close = difflib.get_close_matches(name, files.defaults, n=1)
             meant = f" (did you mean {close[0]}?)" if close else ""
             reason = f"has no effect: it must be an argument of the model{meant}"
