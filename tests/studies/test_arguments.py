@@ -7,7 +7,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pandas as pd
 import pytest
+import xarray as xr
 
 import crawler2d as c2d
 from tests.shared import refused
@@ -115,10 +117,25 @@ def test_a_single_run_or_scenario_is_no_list_of_them() -> None:
     scenario: Any = c2d.Scenario(ROBOT, c2d.terrains.flat(), duration=0.1)
     with pytest.raises(c2d.ScenarioError, match="scenarios must be several"):
         c2d.simulate_many(scenario)
-    with pytest.raises(c2d.ScenarioError, match="table must be what sweep returned"):
+    with pytest.raises(c2d.ScenarioError, match="table must be what sweep or table returned"):
         c2d.rate(c2d.simulate(scenario))  # type: ignore[arg-type]
     with pytest.raises(c2d.ScenarioError, match="runs must be several"):
         c2d.table(c2d.simulate(scenario))  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        "study.sqlite",
+        "cleared",
+        xr.DataArray([["cleared"]]),
+        pd.DataFrame({"outcome": ["cleared"]}),
+    ],
+)
+def test_rate_refuses_paths_and_frames_by_the_name_of_its_argument(given: Any) -> None:
+    rule = "table must be what sweep or table returned, or outcomes in a list"
+    with pytest.raises(c2d.ScenarioError, match=rule):
+        c2d.rate(given)
 
 
 @pytest.mark.parametrize("given", [np.array(2), np.array("x"), np.array(None), np.ma.masked])

@@ -239,8 +239,10 @@ def _distinct(valid: NDArray[np.bool_], *steps: NDArray[np.float64]) -> int:
 
 
 def _texts(outcomes: object) -> list[str]:
-    if not is_iterable(outcomes):
-        raise ScenarioError("table", outcomes, "must be what sweep returned, or outcomes in a list")
+    is_text = isinstance(outcomes, str)
+    if is_text or not is_iterable(outcomes) or getattr(outcomes, "ndim", 1) != 1:
+        rule = "must be what sweep or table returned, or outcomes in a list"
+        raise ScenarioError("table", outcomes, rule)
     names = list(Outcome)
     outcomes = list(outcomes)
     if any(isinstance(outcome, Record) for outcome in outcomes):
