@@ -368,6 +368,8 @@ def test_each_of_300_runs_on_a_step_field_meets_a_field_of_its_own_as_does_the_b
         ((SEIZING, STEP), {"repeats": 0}, "repeats"),
         ((SEIZING, STEP), {"seed": -1}, "seed"),
         ((SEIZING, STEP), {"drive": 0.4}, "drive"),
+        ((SEIZING, STEP), {"drive": c2d.Drive(speed=0)}, "drive.speed"),
+        ((SEIZING, STEP), {"drive": c2d.Drive(speed=0, schedule=((1, 0),))}, "drive.speed"),
         ((SEIZING, STEP), {"duration": -1.0}, "duration"),
         ((FILES / "cart.urdf",), {"engines": "gz"}, "engines"),
         ((FILES / "cart.urdf",), {"engine": "ode"}, "engine"),

@@ -306,6 +306,8 @@ def audit(
     thread_count(threads)
     if drive is not None and not isinstance(drive, Drive):
         raise ScenarioError("drive", drive, "must be a Drive")
+    if drive is not None and not any((drive.speed, *(speed for _, speed in drive.schedule or ()))):
+        raise ScenarioError("drive.speed", drive.speed, "must move the robot: it meets no obstacle")
     own_arguments = {
         "obstacles": obstacles,
         "vary": vary,
