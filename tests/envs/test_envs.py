@@ -371,6 +371,13 @@ def test_a_wrong_action_is_refused(action: Any) -> None:
         env.step(action)
 
 
+def test_the_error_about_an_action_has_its_shape_as_it_was_given() -> None:
+    env = c2d.envs.FlipperEnv()
+    env.reset(seed=0)
+    with pytest.raises(c2d.ScenarioError, match=r"must be 3 numbers, got shape \(2,\)"):
+        env.step(np.zeros(2, np.float32))
+
+
 def test_the_action_of_an_episode_that_has_ended_may_be_anything() -> None:
     def states(after_the_end: float) -> Any:
         env = FlipperVectorEnv(2, WHEELED, dt=0.5)

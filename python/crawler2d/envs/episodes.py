@@ -149,7 +149,9 @@ class Episodes:
         if array.shape != shape:
             each = f" for each of {shape[0]} robots" if shape[0] > 1 else ""
             rule = f"must be {shape[1]} numbers{each}"
-            raise ScenarioError("action", f"shape {array.shape}", rule)
+            is_of_one = array.shape[:1] == (1,) == shape[:1]
+            given = array.shape[1:] if is_of_one else array.shape
+            raise ScenarioError("action", f"shape {given}", rule)
         array = np.where(driven[:, None], array, 0.0)
         if not np.isfinite(array).all():
             raise ScenarioError("action", array[~np.isfinite(array)][0], "must be finite")
