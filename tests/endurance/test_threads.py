@@ -47,21 +47,20 @@ def alone(number: int, pieces: int) -> bytes:
     return sim.snapshot()
 
 
-def check_own(pieces: int) -> None:
+def short_and_long(short: int, long: int) -> pytest.MarkDecorator:
+    """A short test, and a long one with the soak tests."""
+    each = [short, pytest.param(long, marks=pytest.mark.soak)]
+    return pytest.mark.parametrize("pieces", each)
+
+
+@short_and_long(3, 300)
+def test_simulations_of_sixteen_threads_have_the_bits_of_one(pieces: int) -> None:
     serial = [alone(number, pieces) for number in range(THREADS)]
     assert together(lambda number: alone(number, pieces)) == serial
 
 
-def test_simulations_of_sixteen_threads_have_the_bits_of_one() -> None:
-    check_own(3)
-
-
-@pytest.mark.soak
-def test_long_simulations_of_sixteen_threads_have_the_bits_of_one() -> None:
-    check_own(300)
-
-
-def check_shared(pieces: int) -> None:
+@short_and_long(8, 2000)
+def test_a_simulation_that_sixteen_threads_share_does_all_they_ask(pieces: int) -> None:
     shared = c2d.Simulation(VARIANTS["belt-step"])
 
     def work(number: int) -> None:
@@ -83,16 +82,8 @@ def check_shared(pieces: int) -> None:
     assert (run.position[-1] == shared.state().position).all()
 
 
-def test_a_simulation_that_sixteen_threads_share_does_all_they_ask() -> None:
-    check_shared(8)
-
-
-@pytest.mark.soak
-def test_a_simulation_that_sixteen_threads_share_for_long_does_all_they_ask() -> None:
-    check_shared(2000)
-
-
-def check_shared_batch(pieces: int) -> None:
+@short_and_long(6, 600)
+def test_a_batch_that_sixteen_threads_share_does_all_they_ask(pieces: int) -> None:
     many = c2d.Simulations([VARIANTS[name] for name in NAMES], threads=2)
 
     def work(number: int) -> None:
@@ -109,15 +100,6 @@ def check_shared_batch(pieces: int) -> None:
     for place in range(len(NAMES)):
         run = many.to_run(place)
         assert (run.position[-1] == many.state().position[place]).all()
-
-
-def test_a_batch_that_sixteen_threads_share_does_all_they_ask() -> None:
-    check_shared_batch(6)
-
-
-@pytest.mark.soak
-def test_a_batch_that_sixteen_threads_share_for_long_does_all_they_ask() -> None:
-    check_shared_batch(600)
 
 
 def test_sweeps_of_several_threads_have_the_tables_of_one(tmp_path: Path) -> None:
