@@ -28,6 +28,7 @@ __all__ = [
     "extent_of",
     "inset",
     "place",
+    "profile_between",
     "relative",
 ]
 
@@ -107,6 +108,13 @@ def inset(belt: NDArray[np.float64], depth: float) -> NDArray[np.float64]:
     inwards = inwards + np.roll(inwards, 1, axis=0)
     line: NDArray[np.float64] = belt + depth * inwards / np.hypot(*inwards.T)[:, None]
     return line
+
+
+def profile_between(profile: NDArray[np.float64], left: float, right: float) -> NDArray[np.float64]:
+    """[m] Cut a profile at two positions on level or sloping ground."""
+    inner = profile[(profile[:, 0] > left) & (profile[:, 0] < right)]
+    start, end = np.interp([left, right], *profile.T)
+    return np.vstack([(left, start), inner, (right, end)])
 
 
 def extent_of(*points: NDArray[np.float64], margin: float = 0.0) -> Extent:
@@ -298,12 +306,7 @@ class Scene:
 
     def surfaces(self, left: float, right: float) -> list[NDArray[np.float64]]:
         """[m] Surfaces of the lanes between two positions, the farthest from the viewer first."""
-        found = []
-        for _, profile in self.lanes:
-            inner = profile[(profile[:, 0] > left) & (profile[:, 0] < right)]
-            start, end = np.interp([left, right], *profile.T)
-            found.append(np.vstack([(left, start), inner, (right, end)]))
-        return found
+        return [profile_between(profile, left, right) for _, profile in self.lanes]
 
     def extent(self) -> Extent:
         """[m] The stretch of ground that the robot visits."""

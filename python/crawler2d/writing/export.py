@@ -17,7 +17,7 @@ from crawler2d import _core
 from crawler2d.common.arrays import real_number
 from crawler2d.common.bodies import Lane, discs_in, end_discs
 from crawler2d.common.files import write_text
-from crawler2d.drawings.scene import Scene
+from crawler2d.drawings.scene import Scene, profile_between
 from crawler2d.errors import ScenarioError
 from crawler2d.model_tree import Array, Friction, Pose, Tree, from_rpy
 from crawler2d.writing.carriers import Across, Format, across_of
@@ -307,7 +307,7 @@ def _ground_of(
     ends : tuple of float, shape (2,)
         [m] The range of the profiles; the plane is endless.
     """
-    profiles = [(lane, _between(points, *ends), each) for (lane, points), each in lanes]
+    profiles = [(lane, profile_between(points, *ends), each) for (lane, points), each in lanes]
     level = min(float(points[:, 1].min()) for _, points, _ in profiles)
     if len({friction for _, friction in lanes}) > 1:
         level -= _BELOW * across.gauge  # or else the plane's friction would count for a lane there
@@ -332,13 +332,6 @@ def _ground_of(
     ]
     largest = max(friction for _, friction in lanes)
     return Ground(level=level, friction=largest, pieces=tuple(pieces))
-
-
-def _between(points: Array, left: float, right: float) -> Array:
-    """Cut a profile at two positions on level or sloping ground."""
-    inner = points[(points[:, 0] > left) & (points[:, 0] < right)]
-    first, last = ([x, float(np.interp(x, *points.T))] for x in (left, right))
-    return np.array([first, *inner, last])
 
 
 def _convex(points: Array, level: float) -> Iterator[Array]:
