@@ -139,8 +139,14 @@ def _values(scenario: Scenario, x: str, values: Sequence[float] | None) -> list[
 
 
 def _ranges(cells: Sequence[Scenario], most: float) -> list[dict[str, Any]]:
-    """Compute the jams of each scenario at any friction."""
-    return _core.jam_ranges([cell.to_json() for cell in cells], most)
+    """Compute the jams of each scenario at any friction: columns named as in the chart."""
+    found: list[dict[str, Any]] = _core.jam_ranges([cell.to_json() for cell in cells], most)
+    for cell in found:
+        inside = zip(cell["between"], cell["depth"], strict=True)
+        pairs = [sorted(two) if two and depth > _INSIDE else [-1, -1] for two, depth in inside]
+        cell["rear"], cell["front"] = ([pair[end] for pair in pairs] for end in (0, 1))
+        cell["position"] = cell["x"]
+    return found
 
 
 def _dataset(
@@ -153,26 +159,12 @@ def _dataset(
     from crawler2d.sweeps.figure_dataset import FigureDataset  # noqa: PLC0415 - needs xarray
 
     name = short_names([x, *_TEXTS])[x]
-    columns = {
-        "low": _padded(own, lambda cell: cell["low"]),
-        "high": _padded(own, lambda cell: cell["high"]),
-        "rear": _padded(own, lambda cell: _bodies(cell)[0]),
-        "front": _padded(own, lambda cell: _bodies(cell)[1]),
-        "depth": _padded(own, lambda cell: cell["depth"]),
-        "position": _padded(own, lambda cell: cell["x"]),
-        "angle": _padded(own, lambda cell: cell["angle"]),
-    }
-    of_belts = {
-        "belt_low": _padded(belts, lambda cell: cell["low"]),
-        "belt_high": _padded(belts, lambda cell: cell["high"]),
-    }
-    variables: dict[str, Any] = {
-        key: (("model", name, "jam"), array, _attributes(key)) for key, array in columns.items()
-    }
-    variables |= {
-        key: (("model", name, "belt_jam"), array, _attributes(key))
-        for key, array in of_belts.items()
-    }
+    variables: dict[str, Any] = {}
+    for column, (long_name, units) in _TEXTS.items():
+        is_belt = column.startswith("belt_")
+        dims = ("model", name, "belt_jam" if is_belt else "jam")
+        array = _padded(belts if is_belt else own, column.removeprefix("belt_"))
+        variables[column] = (dims, array, {"long_name": long_name, "units": units})
     coordinates = {
         "model": ("model", list(labels)),
         name: (name, list(along), field_attributes([x])),
@@ -180,21 +172,9 @@ def _dataset(
     return FigureDataset(variables, coordinates, {"figure": "jam_chart", "x": name})
 
 
-def _attributes(name: str) -> dict[str, str]:
-    long_name, units = _TEXTS[name]
-    return {"long_name": long_name, "units": units}
-
-
-def _bodies(cell: dict[str, Any]) -> tuple[list[int], list[int]]:
-    """List the bodies on either side of the ground inside the track."""
-    inside = zip(cell["between"], cell["depth"], strict=True)
-    pairs = [sorted(two) if two and depth > _INSIDE else [-1, -1] for two, depth in inside]
-    return [rear for rear, _ in pairs], [front for _, front in pairs]
-
-
-def _padded(models: Sequence[Sequence[dict[str, Any]]], column: Any) -> NDArray[np.float64]:
+def _padded(models: Sequence[Sequence[dict[str, Any]]], column: str) -> NDArray[np.float64]:
     """Stack a column of every cell, shape (models, values, jams), padded with NaN."""
-    rows = [[np.asarray(column(cell), float) for cell in cells] for cells in models]
+    rows = [[np.asarray(cell[column], float) for cell in cells] for cells in models]
     most = max(len(row) for cells in rows for row in cells)
     padded = [
         [np.concatenate([row, np.full(most - len(row), np.nan)]) for row in cells] for cells in rows
