@@ -110,13 +110,6 @@ def test_impossible_counts_are_refused(successes: int, count: int) -> None:
         wilson(successes, count)
 
 
-@pytest.mark.parametrize("confidence", [0.0, 1.0, 95.0, math.nan])
-def test_impossible_confidence_is_refused(confidence: float) -> None:
-    message = f"^confidence must be between 0 and 1, got {confidence}$"
-    with refusing(SAID, message):
-        wilson(1, 2, confidence)
-
-
 def test_an_empty_sample_has_no_difference() -> None:
     for sizes, name in (((0, 2), "n"), ((2, 0), "m"), ((-1, 2), "n")):
         message = f"^{name} must be a whole number from 1 to .*, got {min(sizes)}$"
@@ -264,19 +257,9 @@ def test_newcombe_paired_of_a_million_pairs_does_not_overflow() -> None:
     assert newcombe_paired(*pairs) == difference
 
 
-@pytest.mark.parametrize(
-    ("pairs", "message"),
-    [
-        ((0, 0, 0, 0), "neither must be at least 1 if there are no other pairs, got 0"),
-        ((-1, 2, 3, 4), "both must be a whole number from 0 to .*, got -1"),
-        ((1, 2, 3, -4), "neither must be a whole number from 0 to .*, got -4"),
-    ],
-)
-def test_impossible_numbers_of_pairs_are_refused(
-    pairs: tuple[int, int, int, int], message: str
-) -> None:
-    with refusing(SAID, f"^{message}$"):
-        newcombe_paired(*pairs)
+def test_no_pairs_are_refused() -> None:
+    with refusing(SAID, "^neither must be at least 1 if there are no other pairs, got 0$"):
+        newcombe_paired(0, 0, 0, 0)
 
 
 # Two-sided binomial tails, by hand.
@@ -329,10 +312,6 @@ def test_a_bootstrap_is_the_normal_interval_of_many_values() -> None:
     assert high - low == pytest.approx((narrow.high - narrow.low) * 1.96 / 0.674, rel=0.1)
 
 
-def test_a_bootstrap_repeats_itself() -> None:
-    assert bootstrap_mean([1.0, 5.0, 2.0]) == bootstrap_mean([1.0, 5.0, 2.0])
-
-
 def test_a_bootstrap_covers_the_true_mean_nearly_as_often_as_it_claims() -> None:
     samples = np.random.default_rng(2).normal(0.0, 1.0, (80, 20))
     covered = np.mean([low <= 0.0 <= high for _, low, high in map(bootstrap_mean, samples)])
@@ -350,16 +329,19 @@ def test_equal_values_have_an_interval_of_no_width() -> None:
     assert bootstrap_mean([0.25] * 4) == (0.25, 0.25, 0.25)
 
 
-@pytest.mark.parametrize("confidence", [0.0, 1.0, math.nan])
+@pytest.mark.parametrize("confidence", [0.0, 1.0, 95.0, math.nan])
 def test_every_interval_refuses_an_impossible_confidence(confidence: float) -> None:
-    with refusing(SAID, "confidence"):
+    message = f"^confidence must be between 0 and 1, got {confidence}$"
+    with refusing(SAID, message):
+        wilson(1, 2, confidence)
+    with refusing(SAID, message):
         newcombe_paired(1, 2, 3, 4, confidence)
-    with refusing(SAID, "confidence"):
+    with refusing(SAID, message):
         bootstrap_mean([1.0, 2.0], confidence)
 
 
 @pytest.mark.parametrize("name", ["both", "first", "second", "neither"])
 def test_each_kind_of_pair_is_refused_by_its_name(name: str) -> None:
     pairs = {"both": 1, "first": 2, "second": 3, "neither": 4, name: -1}
-    with refusing(SAID, f"^{name} must be a whole number"):
+    with refusing(SAID, f"^{name} must be a whole number from 0 to .*, got -1$"):
         newcombe_paired(**pairs)
