@@ -55,24 +55,22 @@ def outlines(film: Film) -> list[Any]:
     return [np.array(line.get_xydata()) for line in film.figure.axes[0].get_lines()]
 
 
-def test_a_run_that_has_ended_stands_still(pair: list[c2d.Run]) -> None:
-    film = film_of(pair, [2.0, 3.0, 4.0, 5.0])
-    drawn = []
-    for number in range(4):
+def unchanged(runs: list[c2d.Run], times: list[float], still: int) -> list[bool]:
+    """Whether each frame has the first picture of one of them."""
+    film, drawn = film_of(runs, times), []
+    for number in range(len(times)):
         film.show(number)
         drawn.append(outlines(film))
-    same = [all(map(np.array_equal, drawn[1], each)) for each in drawn]
-    assert same == [False, True, True, True]
+    return [all(map(np.array_equal, drawn[still], each)) for each in drawn]
+
+
+def test_a_run_that_has_ended_stands_still(pair: list[c2d.Run]) -> None:
+    assert unchanged(pair, [2.0, 3.0, 4.0, 5.0], 1) == [False, True, True, True]
 
 
 def test_a_branch_stands_still_until_it_branches_off(pair: list[c2d.Run]) -> None:
     branch = pair[1].branch(2.0, track=c2d.BeltTrack(), duration=1.0)
-    film = film_of([branch, pair[1]], [0.0, 1.0, 2.0, 2.5])
-    drawn = []
-    for number in range(4):
-        film.show(number)
-        drawn.append(outlines(film))
-    same = [all(map(np.array_equal, drawn[0], each)) for each in drawn]
+    same = unchanged([branch, pair[1]], [0.0, 1.0, 2.0, 2.5], 0)
     assert same == [True, True, True, False]
 
 
