@@ -62,36 +62,34 @@ SIZE, SQUARE = 0.8, 0.64  # of a radius of 0.1 m in place of 0.125 m
 """Mass stays; at the same force and speed torques are in proportion, angular speeds the inverse."""
 
 
-def test_smaller_wheels_of_a_urdf_scale_with_their_radius(tmp_path: Path) -> None:
-    reading = read(tmp_path, CART["urdf"], "urdf")
-    assert factors(reading.text, resized(reading, 0.1)) == {
+SMALLER: dict[str, dict[str, set[tuple[float, ...]]]] = {
+    "urdf": {
         "cylinder@radius": {(SIZE,)},
         "limit@effort": {(SIZE,)},
         "limit@velocity": {(1.0 / SIZE,)},
         **{f"inertia@{name}": {(SQUARE,)} for name in ("ixx", "iyy", "izz")},
         **{f"inertia@{name}": {(0.0,)} for name in ("ixy", "ixz", "iyz")},
-    }
-
-
-def test_smaller_wheels_of_an_sdf_scale_with_their_radius(tmp_path: Path) -> None:
-    reading = read(tmp_path, CART["sdf"], "sdf")
-    assert factors(reading.text, resized(reading, 0.1)) == {
+    },
+    "sdf": {
         "radius": {(SIZE,)},
         "effort": {(SIZE,)},
         "velocity": {(1.0 / SIZE,)},
         **{name: {(SQUARE,)} for name in ("ixx", "iyy", "izz")},
-    }
-
-
-def test_smaller_wheels_of_an_mjcf_scale_with_their_radius(tmp_path: Path) -> None:
-    reading = read(tmp_path, CART["xml"], "xml")
-    assert factors(reading.text, resized(reading, 0.1)) == {
+    },
+    "xml": {
         "geom@size": {(SIZE, 1.0)},
         "inertial@diaginertia": {(SQUARE,) * 3},
         "velocity@kv": {(SQUARE,)},
         "velocity@forcerange": {(SIZE,) * 2},
         "velocity@ctrlrange": {(1.0 / SIZE,) * 2},
-    }
+    },
+}
+
+
+@pytest.mark.parametrize("suffix", CART)
+def test_smaller_wheels_scale_with_their_radius(suffix: str, tmp_path: Path) -> None:
+    reading = read(tmp_path, CART[suffix], suffix)
+    assert factors(reading.text, resized(reading, 0.1)) == SMALLER[suffix]
 
 
 SHARE = 0.75
