@@ -65,7 +65,7 @@ def critical_value(
     models: Models | None = None,
     tolerance: float | None = None,
     points: int = POINTS,
-    **how: Unpack[RateSampling],
+    **sampling: Unpack[RateSampling],
 ) -> FigureDataset:
     """Find where the rate of clearing crosses one half along one field, such as friction.
 
@@ -86,7 +86,7 @@ def critical_value(
         Largest width of the bracket, above 0; None takes a hundredth of the range.
     points : int
         Number of initial values, 2 to 1000.
-    **how
+    **sampling
         See `crawler2d.studies`.
 
     Returns
@@ -128,7 +128,7 @@ def critical_value(
     read_number_path(scenario, path, "path")
     fields = read_models(scenario, models, [path])
     name = short_names([path])[path]
-    with campaign(scenario, how, [path, *paths_of(fields)], threshold=0.5) as study:
+    with campaign(scenario, sampling, [path, *paths_of(fields)], threshold=0.5) as study:
         lines: list[Line] = []
         for label, own in fields.items():
             at, names = partial(_with_value, scenario.replace(own), path), (f"model={label}", name)

@@ -281,7 +281,7 @@ class Campaign:
     def __init__(
         self,
         base: Scenario,
-        how: RateSampling,
+        sampling: RateSampling,
         planner: Planner,
         collector: Collector,
         report: Reporter,
@@ -289,9 +289,9 @@ class Campaign:
         threshold: float | None,
     ) -> None:
         self.base = base
-        self.until = how["until"]
+        self.until = sampling["until"]
         self.threshold = threshold if self.until.threshold is None else self.until.threshold
-        self.trials = trial_names(how.get("trials"))
+        self.trials = trial_names(sampling.get("trials"))
         self.planner = planner
         self.settings = 0
         self._collector, self._report = collector, report
@@ -374,7 +374,7 @@ class Campaign:
 @contextlib.contextmanager
 def campaign(
     base: Scenario,
-    how: RateSampling | Sampling,
+    sampling: RateSampling | Sampling,
     swept: Sequence[str] = (),
     *,
     threshold: float | None = None,
@@ -386,7 +386,7 @@ def campaign(
     ----------
     base : Scenario
         The scenario that all cells share.
-    how : Sampling
+    sampling : Sampling
         The keywords of the study.
     swept : sequence of str
         Paths set by the study.
@@ -407,30 +407,30 @@ def campaign(
         until = Until(threshold=threshold)
     else:
         until = Until(min_runs=repeats, max_runs=repeats)
-    given: RateSampling = {"until": until, **how}
+    given: RateSampling = {"until": until, **sampling}
     if not isinstance(given["until"], Until):
         raise ScenarioError("until", given["until"], "must be an Until")
     planner = Planner.read(
         base,
         swept,
-        vary=how.get("vary"),
-        unknown=how.get("unknown"),
-        seed=how.get("seed", 0),
-        samples=how.get("samples", 20),
+        vary=sampling.get("vary"),
+        unknown=sampling.get("unknown"),
+        seed=sampling.get("seed", 0),
+        samples=sampling.get("samples", 20),
     )
     # A model may have a drive of its own.
     if not {"drive", "drive.schedule", "drive.gait"}.intersection(swept):
         planner.check_effect([base], swept)
-    store = how.get("store")
+    store = sampling.get("store")
     try:
         with (
             Collector(
-                trial_names(how.get("trials")),
+                trial_names(sampling.get("trials")),
                 store=store,
-                executor=how.get("executor"),
-                threads=thread_count(how.get("threads")),
+                executor=sampling.get("executor"),
+                threads=thread_count(sampling.get("threads")),
             ) as collector,
-            reporter(how.get("progress", True), 0) as report,
+            reporter(sampling.get("progress", True), 0) as report,
         ):
             yield Campaign(base, given, planner, collector, report, threshold=threshold)
     except RowsInterrupted as interrupt:

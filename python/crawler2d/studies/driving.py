@@ -174,7 +174,7 @@ class Figure:
 def _limiting_study(
     figure: Figure,
     scenario: Scenario,
-    how: Sampling,
+    sampling: Sampling,
     *,
     models: Models | None,
     speed: float | None,
@@ -191,7 +191,7 @@ def _limiting_study(
     changes = (UNCHANGED, figure.command, TORQUE, FRICTION)
     plane, swept = on_plane(scenario, given), paths_of(fields)
     count = whole_number(repeats, "repeats", 1, 10**6)
-    with campaign(plane, _sampling(how), swept, repeats=count) as study:
+    with campaign(plane, _without_commands(sampling), swept, repeats=count) as study:
         run_ups = [
             RunUp(
                 (f"model={label}", f"change={change.label}"),
@@ -252,19 +252,19 @@ def _check_fields(given: object, place: str) -> None:
             raise ScenarioError(place, path, rule)
 
 
-def _sampling(how: Sampling) -> Sampling:
+def _without_commands(sampling: Sampling) -> Sampling:
     """Drop commands of the study from the default draws, or refuse given draws of them."""
-    vary = how.get("vary")
+    vary = sampling.get("vary")
     if vary is None:
         vary = of_start() | of_contact()
     if isinstance(vary, Ranges):
         vary = vary.without(vary.optional.intersection(_COMMANDED))
-    for name, given in (("vary", vary), ("unknown", how.get("unknown"))):
+    for name, given in (("vary", vary), ("unknown", sampling.get("unknown"))):
         for path, drawn in given.items() if isinstance(given, Mapping) else ():
             if path in _COMMANDED:
                 rule = "must not draw what the study commands: give models for other speeds"
                 raise ScenarioError(f"{name}[{path!r}]", drawn, rule)
-    return {**how, "vary": vary}
+    return {**sampling, "vary": vary}
 
 
 _STANDS = 1e-3
@@ -278,7 +278,7 @@ def max_speed(
     models: Models | None = None,
     speed: float | None = None,
     repeats: int = 10,
-    **how: Unpack[Sampling],
+    **sampling: Unpack[Sampling],
 ) -> FigureDataset:
     """Measure the steady speed of each model at full command, and what limits it.
 
@@ -298,7 +298,7 @@ def max_speed(
         [m/s] Commanded speed, above 0, at most the robot's `max_speed`, which None takes.
     repeats : int
         Runs of every cell, 1 to 1,000,000.
-    **how
+    **sampling
         See `crawler2d.studies`. Without `vary`, repeats draw start and friction, not the commanded
         speed.
 
@@ -333,7 +333,9 @@ def max_speed(
     >>> found["speed"].values.round(3).tolist(), found["limit"].values.tolist()
     ([1.39], ['command'])
     """
-    return _limiting_study(_MAX_SPEED, scenario, how, models=models, speed=speed, repeats=repeats)
+    return _limiting_study(
+        _MAX_SPEED, scenario, sampling, models=models, speed=speed, repeats=repeats
+    )
 
 
 @takes_keywords
@@ -343,7 +345,7 @@ def acceleration(
     models: Models | None = None,
     speed: float | None = None,
     repeats: int = 10,
-    **how: Unpack[Sampling],
+    **sampling: Unpack[Sampling],
 ) -> FigureDataset:
     """Measure the mean acceleration of each model from rest to its speed, and what limits it.
 
@@ -354,7 +356,7 @@ def acceleration(
 
     Parameters
     ----------
-    scenario, models, speed, repeats, **how
+    scenario, models, speed, repeats, **sampling
         See `max_speed`; here `command` is `robot.drivetrain.max_acceleration`.
 
     Returns
@@ -378,7 +380,7 @@ def acceleration(
     ['command', 'torque']
     """
     return _limiting_study(
-        _ACCELERATION, scenario, how, models=models, speed=speed, repeats=repeats
+        _ACCELERATION, scenario, sampling, models=models, speed=speed, repeats=repeats
     )
 
 
@@ -389,7 +391,7 @@ def braking_distance(
     models: Models | None = None,
     speed: float | None = None,
     repeats: int = 10,
-    **how: Unpack[Sampling],
+    **sampling: Unpack[Sampling],
 ) -> FigureDataset:
     """Measure the distance of each model from the command to stop until rest, and what limits it.
 
@@ -398,7 +400,7 @@ def braking_distance(
 
     Parameters
     ----------
-    scenario, models, speed, repeats, **how
+    scenario, models, speed, repeats, **sampling
         See `max_speed`; here `command` is `robot.drivetrain.max_deceleration`.
 
     Returns
@@ -423,7 +425,9 @@ def braking_distance(
     >>> found["limit"].item()
     'command'
     """
-    return _limiting_study(_BRAKING, scenario, how, models=models, speed=speed, repeats=repeats)
+    return _limiting_study(
+        _BRAKING, scenario, sampling, models=models, speed=speed, repeats=repeats
+    )
 
 
 def _speed(run_up: RunUp, _halt: Halt | None) -> NDArray[np.float64]:

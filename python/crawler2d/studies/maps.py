@@ -141,7 +141,7 @@ def seizure_map(
     outcome: str = "seized",
     models: Models | None = None,
     refine: int = 1,
-    **how: Unpack[RateSampling],
+    **sampling: Unpack[RateSampling],
 ) -> FigureDataset:
     """Map outcomes and their rates over two fields, such as height and friction.
 
@@ -162,7 +162,7 @@ def seizure_map(
         See `compare`; None takes the scenario's own robot.
     refine : int
         Number of times that the grid is halved, 0 to 6.
-    **how
+    **sampling
         See `crawler2d.studies`. Each cell is simulated until the rate of its commonest end is known
         to be above or below one half, or within 0.2, unless `until` says otherwise.
 
@@ -217,7 +217,7 @@ def seizure_map(
     fields = read_models(scenario, models, [path_x, path_y])
     swept = [path_x, path_y, *paths_of(fields)]
     values_x, values_y = _halved(coarse_x, halvings), _halved(coarse_y, halvings)
-    with campaign(scenario, how, swept, threshold=0.5) as study:
+    with campaign(scenario, sampling, swept, threshold=0.5) as study:
         bases = {label: scenario.replace(own) for label, own in fields.items()}
 
         def simulate(places: Sequence[tuple[int, ...]]) -> list[list[Tally]]:

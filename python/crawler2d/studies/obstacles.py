@@ -44,7 +44,7 @@ def max_obstacle(
     *,
     models: Models | None = None,
     heights: Sequence[float] | None = None,
-    **how: Unpack[RateSampling],
+    **sampling: Unpack[RateSampling],
 ) -> FigureDataset:
     """Find the highest obstacle that each model clears.
 
@@ -60,7 +60,7 @@ def max_obstacle(
     heights : sequence of float, optional
         [m] Heights to try; None takes multiples of a sixth of the front radius, up to twice the
         radius.
-    **how
+    **sampling
         See `crawler2d.studies`. Each cell is simulated until its rate is known to be above or below
         one half, or within 0.2, unless `until` says otherwise.
 
@@ -99,7 +99,7 @@ def max_obstacle(
     check_study(scenario)
     radius = scenario.robot.outline.front_radius
     given = [radius * k / 6.0 for k in range(1, 13)] if heights is None else heights
-    return _find_greatest(scenario, "max_obstacle", ("terrain.height", given), models, how)
+    return _find_greatest(scenario, "max_obstacle", ("terrain.height", given), models, sampling)
 
 
 @takes_keywords
@@ -108,7 +108,7 @@ def max_slope(
     *,
     models: Models | None = None,
     angles: Sequence[float] | None = None,
-    **how: Unpack[RateSampling],
+    **sampling: Unpack[RateSampling],
 ) -> FigureDataset:
     """Find the steepest slope that each model climbs; see `max_obstacle`.
 
@@ -116,14 +116,14 @@ def max_slope(
     ----------
     scenario : Scenario
         Its terrain has an `angle`, such as a ramp.
-    models, **how
+    models, **sampling
         See `max_obstacle`.
     angles : sequence of float, optional
         [rad] Angles to try; None takes 5 to 60 degrees, 5 apart.
     """
     check_study(scenario)
     given = [math.radians(5.0 * k) for k in range(1, 13)] if angles is None else angles
-    return _find_greatest(scenario, "max_slope", ("terrain.angle", given), models, how)
+    return _find_greatest(scenario, "max_slope", ("terrain.angle", given), models, sampling)
 
 
 @takes_keywords
@@ -132,7 +132,7 @@ def max_gap(
     *,
     models: Models | None = None,
     widths: Sequence[float] | None = None,
-    **how: Unpack[RateSampling],
+    **sampling: Unpack[RateSampling],
 ) -> FigureDataset:
     """Find the widest gap that each model crosses; see `max_obstacle`.
 
@@ -140,7 +140,7 @@ def max_gap(
     ----------
     scenario : Scenario
         Its terrain has a `width`, such as a gap.
-    models, **how
+    models, **sampling
         See `max_obstacle`.
     widths : sequence of float, optional
         [m] Widths to try; None takes multiples of a tenth of the axle distance, up to all of it.
@@ -148,7 +148,7 @@ def max_gap(
     check_study(scenario)
     length = scenario.robot.outline.axle_distance
     given = [length * k / 10.0 for k in range(1, 11)] if widths is None else widths
-    return _find_greatest(scenario, "max_gap", ("terrain.width", given), models, how)
+    return _find_greatest(scenario, "max_gap", ("terrain.width", given), models, sampling)
 
 
 def _find_greatest(
@@ -156,7 +156,7 @@ def _find_greatest(
     figure: str,
     over: tuple[str, Sequence[float]],
     models: Models | None,
-    how: RateSampling,
+    sampling: RateSampling,
 ) -> FigureDataset:
     path, values = over
     name = path.rpartition(".")[2]
@@ -167,7 +167,7 @@ def _find_greatest(
         raise ScenarioError("terrain", scenario.terrain, rule) from None
     tried = sorted(set(read_numbers(values, f"{name}s")))
     fields = read_models(scenario, models, [path])
-    with campaign(scenario, how, [path, *paths_of(fields)], threshold=0.5) as study:
+    with campaign(scenario, sampling, [path, *paths_of(fields)], threshold=0.5) as study:
         cells = [
             Cell((f"model={label}", f"{name}={value:g}"), scenario.replace({**own, path: value}))
             for label, own in fields.items()
@@ -253,7 +253,7 @@ def success_rate(
     *,
     terrains: Mapping[str, Terrain] | None = None,
     models: Models | None = None,
-    **how: Unpack[RateSampling],
+    **sampling: Unpack[RateSampling],
 ) -> FigureDataset:
     """Find the rate at which each model clears each terrain, and how and where it fails.
 
@@ -265,7 +265,7 @@ def success_rate(
         Terrains by label; None takes the scenario's own.
     models : mapping of str to track or fields, optional
         See `compare`; None takes the scenario's own robot.
-    **how
+    **sampling
         See `crawler2d.studies`. Unless `vary` is given, every run on a random step field also has
         its own field. Each cell is simulated until its rate is known within 0.2, unless `until`
         says otherwise.
@@ -300,9 +300,9 @@ def success_rate(
     check_study(scenario)
     grounds = read_terrains(scenario, terrains)
     fields = read_models(scenario, models, ["terrain"] if terrains is not None else [])
-    if how.get("vary") is None and any(hasattr(ground, "seed") for ground in grounds.values()):
-        how = {**how, "vary": vary_fields(grounds)}
-    with campaign(scenario, how, ["terrain", *paths_of(fields)]) as study:
+    if sampling.get("vary") is None and any(hasattr(ground, "seed") for ground in grounds.values()):
+        sampling = {**sampling, "vary": vary_fields(grounds)}
+    with campaign(scenario, sampling, ["terrain", *paths_of(fields)]) as study:
         cells = [
             Cell((f"model={label}", f"terrain={name}"), scenario.replace({"terrain": each, **own}))
             for label, own in fields.items()

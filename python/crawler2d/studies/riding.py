@@ -45,7 +45,11 @@ _STANDS = 1e-3
 
 @takes_keywords
 def ride(
-    scenario: Scenario, *, models: Models | None = None, repeats: int = 10, **how: Unpack[Sampling]
+    scenario: Scenario,
+    *,
+    models: Models | None = None,
+    repeats: int = 10,
+    **sampling: Unpack[Sampling],
 ) -> FigureDataset:
     """Measure the ride of each model on the scenario's ground: vibration and pitching.
 
@@ -58,7 +62,7 @@ def ride(
         See `compare`; None takes the scenario's own robot.
     repeats : int
         Runs per model, 1 to 1,000,000.
-    **how
+    **sampling
         See `crawler2d.studies`.
 
     Returns
@@ -121,7 +125,7 @@ def ride(
     }
     fields = read_models(scenario, models)
     with campaign(
-        scenario, how, paths_of(fields), repeats=whole_number(repeats, "repeats", 1, 10**6)
+        scenario, sampling, paths_of(fields), repeats=whole_number(repeats, "repeats", 1, 10**6)
     ) as study:
         cells = [Cell((f"model={label}",), scenario.replace(own)) for label, own in fields.items()]
         tallies = study.repeat(cells)
@@ -140,7 +144,11 @@ def ride(
 
 @takes_keywords
 def odometry(
-    scenario: Scenario, *, models: Models | None = None, repeats: int = 10, **how: Unpack[Sampling]
+    scenario: Scenario,
+    *,
+    models: Models | None = None,
+    repeats: int = 10,
+    **sampling: Unpack[Sampling],
 ) -> FigureDataset:
     """Measure the odometry error: travel of the track compared with travel of the robot.
 
@@ -151,7 +159,7 @@ def odometry(
 
     Parameters
     ----------
-    scenario, models, repeats, **how
+    scenario, models, repeats, **sampling
         See `ride`.
 
     Returns
@@ -188,7 +196,7 @@ def odometry(
     changes: tuple[Change, ...] = (UNCHANGED, FRICTION)
     fields = read_models(scenario, models)
     with campaign(
-        scenario, how, paths_of(fields), repeats=whole_number(repeats, "repeats", 1, 10**6)
+        scenario, sampling, paths_of(fields), repeats=whole_number(repeats, "repeats", 1, 10**6)
     ) as study:
         cells = [
             Cell(

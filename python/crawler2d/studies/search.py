@@ -55,7 +55,7 @@ def search(
     at_least: float = 0.95,
     first: int = 20,
     confirm: int = 1000,
-    **how: Unpack[Sampling],
+    **sampling: Unpack[Sampling],
 ) -> FigureDataset:
     """Find the cheapest candidate that clears every terrain, such as the one with fewest wheels.
 
@@ -86,7 +86,7 @@ def search(
     confirm : int
         Fresh runs of winner and runner-up on each terrain, 1 to 1,000,000. With unknowns, the same
         number again is spread over `samples` of them, for the band.
-    **how
+    **sampling
         See `crawler2d.studies`; there is no `until`. Unless `vary` is given, every run on a random
         step field also has its own field.
 
@@ -151,9 +151,11 @@ def search(
     fields = variants(space, "space")
     refuse_own(fields, ["terrain"] if terrains is not None else [], "space")
     swept = ["terrain", *paths_of(fields)]
-    if how.get("vary") is None and any(hasattr(ground, "seed") for ground in grounds.values()):
-        how = {**how, "vary": vary_fields(grounds)}
-    with campaign(scenario, how, swept, repeats=whole_number(first, "first", 1, 10**6)) as study:
+    if sampling.get("vary") is None and any(hasattr(ground, "seed") for ground in grounds.values()):
+        sampling = {**sampling, "vary": vary_fields(grounds)}
+    with campaign(
+        scenario, sampling, swept, repeats=whole_number(first, "first", 1, 10**6)
+    ) as study:
         candidates, refusals = _candidates(study, fields, grounds, objective)
         study.settings += len(candidates) * len(grounds)
         rounds = halve(study, candidates, goal, study.until.min_runs)

@@ -226,7 +226,7 @@ def sensitivity(
     *,
     models: Models | None = None,
     outcome: str = "cleared",
-    **how: Unpack[RateSampling],
+    **sampling: Unpack[RateSampling],
 ) -> FigureDataset:
     """Find which uncertain parameters matter most for the outcome: a global sensitivity analysis.
 
@@ -244,7 +244,7 @@ def sensitivity(
         See `compare`; None takes the scenario's own robot.
     outcome : str
         Name of an `Outcome`, or "stopped" for any stop.
-    **how
+    **sampling
         See `crawler2d.studies`. `unknown` is required. `samples` is a power of two from 32 to
         65536; the default is 256. `until` applies to the rates along the ranges; its confidence
         also applies to the indices.
@@ -314,12 +314,12 @@ def sensitivity(
     check_study(scenario)
     extra("scipy.stats", "sensitivity")  # fail before the runs if it is missing
     counts = counting(outcome)
-    samples = _power_of_two(how.get("samples", 256))
+    samples = _power_of_two(sampling.get("samples", 256))
     fields = read_models(scenario, models)
     swept = paths_of(fields)
-    unknowns = _unknowns(scenario, how.pop("unknown", None), swept)
-    how.pop("samples", None)
-    with campaign(scenario, how, [*swept, *unknowns.distributions], threshold=0.5) as study:
+    unknowns = _unknowns(scenario, sampling.pop("unknown", None), swept)
+    sampling.pop("samples", None)
+    with campaign(scenario, sampling, [*swept, *unknowns.distributions], threshold=0.5) as study:
         if len(unknowns.distributions) < 2 and not study.planner.variation.distributions:
             rule = "must have two paths or more where nothing varies from run to run"
             raise ScenarioError("unknown", unknowns.text, rule)
