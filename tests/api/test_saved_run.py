@@ -171,22 +171,31 @@ def test_page_and_data_set_of_a_run_name_its_build(saved: Path) -> None:
 
 
 def test_a_run_that_has_not_stopped_when_its_file_says_so_is_not_continued(saved: Path) -> None:
-    with np.load(saved) as entries:
-        arrays: dict[str, Any] = {name: entries[name] for name in entries.files}
-    stop = json.loads(str(arrays["diagnosis"])) | {"time": 0.1}
-    np.savez_compressed(saved, **arrays | {"diagnosis": np.array(json.dumps(stop))})
+    stop = json.loads(entry(saved, "diagnosis")) | {"time": 0.1}
+    rewrite(saved, diagnosis=json.dumps(stop))
     again = c2d.load(saved)
     error = refused(lambda: again.what_if(track=c2d.BeltTrack()))
     assert (error.path, error.rule) == ("run", "must have stopped")
 
 
-def change(path: Path, edit: Any) -> None:
-    """Change the header of a file."""
+def entry(path: Path, name: str) -> str:
+    """Return a text of a file."""
+    with np.load(path) as entries:
+        return str(entries[name])
+
+
+def rewrite(path: Path, **changed: Any) -> None:
+    """Change entries of a file."""
     with np.load(path) as entries:
         arrays: dict[str, Any] = {name: entries[name] for name in entries.files}
-    about = json.loads(str(arrays["about"]))
+    np.savez_compressed(path, allow_pickle=True, **arrays | changed)
+
+
+def change(path: Path, edit: Any) -> None:
+    """Change the header of a file."""
+    about = json.loads(entry(path, "about"))
     edit(about)
-    np.savez_compressed(path, **arrays | {"about": np.array(json.dumps(about))})
+    rewrite(path, about=json.dumps(about))
 
 
 def refusal(path: Path) -> str:
@@ -220,10 +229,7 @@ def test_the_error_for_a_newer_format_says_what_helps(saved: Path) -> None:
 
 
 def test_a_scenario_that_is_refused_by_now_is_named(saved: Path) -> None:
-    with np.load(saved) as entries:
-        arrays: dict[str, Any] = {name: entries[name] for name in entries.files}
-    text = str(arrays["scenario"]).replace('"gravity":9.81', '"gravity":-9.81')
-    np.savez_compressed(saved, **arrays | {"scenario": np.array(text)})
+    rewrite(saved, scenario=entry(saved, "scenario").replace('"gravity":9.81', '"gravity":-9.81'))
     assert "has a scenario that this crawler2d refuses" in refusal(saved)
     assert "gravity must be >= 0" in refusal(saved)
 
@@ -240,10 +246,8 @@ class Hostile:
 
 def test_nothing_in_a_file_is_executed(saved: Path) -> None:
     executed = saved.with_name("executed")
-    with np.load(saved) as entries:
-        arrays: dict[str, Any] = {name: entries[name] for name in entries.files}
     hostile = np.array([Hostile(executed)], dtype=object)
-    np.savez(saved, allow_pickle=True, **arrays | {"trace/position": hostile})
+    rewrite(saved, **{"trace/position": hostile})
     assert "is damaged" in refusal(saved)
     assert not executed.exists()
     with np.load(saved, allow_pickle=True) as entries:  # the file that would have been written
