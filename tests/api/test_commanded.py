@@ -15,6 +15,7 @@ from crawler2d.parameters.scenario import Scenario
 from crawler2d.runs.simulation import State
 
 # With arms so short that they stay off the ground at the angles of these tests.
+WHEELS = c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(4, wheel_radius=0.0608))
 TWO_ENDS = (
     c2d.robots.engineer()
     .without_flippers()
@@ -65,9 +66,7 @@ def test_a_refused_command_is_no_part_of_the_run(scenario: Scenario) -> None:
 
 
 def test_a_run_repeats_an_advance_that_was_interrupted() -> None:
-    track = c2d.LineOfWheels(4, wheel_radius=0.0608)
-    robot = c2d.robots.engineer(flippers=None, track=track)
-    sim = c2d.Simulation(Scenario(robot, c2d.terrains.step(0.13)))
+    sim = c2d.Simulation(Scenario(WHEELS, c2d.terrains.step(0.13)))
     threading.Timer(0.05, _thread.interrupt_main).start()
     with pytest.raises(KeyboardInterrupt):
         sim.advance(1e4)
@@ -102,9 +101,7 @@ def test_a_run_after_a_reset_forgets_what_was_before(scenario: Scenario) -> None
 
 
 def test_a_stop_under_commands_is_explained_but_not_repeated() -> None:
-    track = c2d.LineOfWheels(4, wheel_radius=0.0608)
-    robot = c2d.robots.engineer(flippers=None, track=track)
-    sim = c2d.Simulation(Scenario(robot, c2d.terrains.step(0.1)))
+    sim = c2d.Simulation(Scenario(WHEELS, c2d.terrains.step(0.1)))
     sim.command(speed=0.3)
     sim.advance(6.0)
     run = sim.to_run(trials=["friction x 2"])
