@@ -13,6 +13,7 @@ from crawler2d.studies.obstacles import _limits
 from crawler2d.sweeps.store import stored_rows
 from tests.pictures.reading import lay_out
 from tests.shared import ROBOT
+from tests.sweeps.small import interrupt_after
 
 BASE = c2d.Scenario(ROBOT, c2d.terrains.step(0.05), solver=c2d.Solver(accuracy=1e-5))
 MODELS = {"belt": c2d.BeltTrack(), "3 gears": c2d.LineOfWheels(3, wheel=c2d.GearWheel())}
@@ -110,12 +111,8 @@ def test_invalid_arguments_are_refused_by_name() -> None:
 def test_ctrl_c_is_reported_and_the_store_can_be_continued(tmp_path: Path) -> None:
     store = tmp_path / "a.sqlite"
 
-    def stop(done: int, _total: int) -> None:
-        if done > 5:
-            raise KeyboardInterrupt
-
     with pytest.raises(c2d.BatchInterrupted, match=r"a\.sqlite keeps them"):
-        found_of(store=store, until=TEN, progress=stop, threads=1)
+        found_of(store=store, until=TEN, progress=interrupt_after(5), threads=1)
     kept = len(list(stored_rows(store)))
     assert kept > 5
     again = found_of(store=store, until=TEN)

@@ -15,6 +15,7 @@ from crawler2d.studies.sobol import Indices, bounds, estimate, points
 from crawler2d.sweeps.store import stored_rows
 from crawler2d.variation.draws import Variation
 from tests.shared import ROBOT, SOAK, refused
+from tests.sweeps.small import interrupt_after
 
 Output = Callable[[Any], Any]
 
@@ -192,12 +193,8 @@ def test_the_same_seed_gives_the_same_runs_and_a_store_keeps_them(
 def test_ctrl_c_is_reported_and_the_store_can_be_continued(tmp_path: Path, slope: Any) -> None:
     store = tmp_path / "a.sqlite"
 
-    def stop(done: int, _total: int) -> None:
-        if done > 5:
-            raise KeyboardInterrupt
-
     with pytest.raises(c2d.BatchInterrupted, match=r"a\.sqlite keeps them"):
-        found_of(store=store, progress=stop, threads=1)
+        found_of(store=store, progress=interrupt_after(5), threads=1)
     assert len(list(stored_rows(store))) > 5
     assert found_of(store=store).identical(slope)
 

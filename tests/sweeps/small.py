@@ -1,5 +1,6 @@
 """Small sweeps for several tests."""
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +23,16 @@ MODELS = {"belt": c2d.BeltTrack(), "line of 3": c2d.LineOfWheels(3)}
 def quiet(base: Scenario, over: Any, **options: Any) -> xr.Dataset:
     """Sweep without a progress bar."""
     return sweep(base, over, **{"repeats": 2, "progress": False, **options})
+
+
+def interrupt_after(count: int) -> Callable[[int, int], None]:
+    """Return a progress that interrupts when more runs than this are finished."""
+
+    def progress(done: int, _total: int) -> None:
+        if done > count:
+            raise KeyboardInterrupt
+
+    return progress
 
 
 def refusal(base: Any, over: Any, **options: Any) -> c2d.ScenarioError:

@@ -23,7 +23,7 @@ from crawler2d.sweeps import collect
 from crawler2d.sweeps.dask import reliable
 from crawler2d.sweeps.store import stored_rows
 from tests.kept import refusing
-from tests.sweeps.small import BASE, MODELS, SAID, quiet
+from tests.sweeps.small import BASE, MODELS, SAID, interrupt_after, quiet
 
 OVER = {"robot.track": MODELS, "terrain.height": [0.03, 0.12]}
 
@@ -161,12 +161,8 @@ def test_a_killed_process_is_reported(tmp_path: Path, monkeypatch: pytest.Monkey
 
 
 def test_ctrl_c_keeps_what_came_back() -> None:
-    def interrupt(done: int, _total: int) -> None:
-        if done:
-            raise KeyboardInterrupt
-
     with pytest.raises(c2d.BatchInterrupted) as caught:
-        swept(Unreliable(losses=0), progress=interrupt)
+        swept(Unreliable(losses=0), progress=interrupt_after(0))
     table = c2d.table(caught.value.runs)
     assert table.sizes == {"run": 32}
     failed = table["outcome"] == "failed"

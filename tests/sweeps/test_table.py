@@ -8,7 +8,7 @@ import xarray as xr
 
 import crawler2d as c2d
 from tests.kept import refusing
-from tests.sweeps.small import BASE, BRIEF, MODELS, SAID, quiet
+from tests.sweeps.small import BASE, BRIEF, MODELS, SAID, interrupt_after, quiet
 
 
 def test_the_table_of_a_batch_has_the_columns_of_a_sweep() -> None:
@@ -38,12 +38,9 @@ def test_runs_without_a_result_are_rows_too() -> None:
 
 
 def test_an_interrupted_batch_is_a_table_of_what_was_finished() -> None:
-    def stop(done: int, _total: int) -> None:
-        if done >= 3:
-            raise KeyboardInterrupt
-
+    progress = interrupt_after(2)
     with pytest.raises(c2d.BatchInterrupted) as caught:
-        c2d.simulate_many([BASE] * 2000, progress=stop, threads=1, record="summary")
+        c2d.simulate_many([BASE] * 2000, progress=progress, threads=1, record="summary")
     found = c2d.table(caught.value.runs)
     finished = (found["outcome"] == "cleared").sum().item()
     assert 3 <= finished < 2000
