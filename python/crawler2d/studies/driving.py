@@ -284,7 +284,7 @@ def max_speed(
 
     Each model starts from rest on the scenario's level ground, or the slope of its ramp, extended
     to an endless plane. Its speed is the mean over two windows of at least 20 grouser pitches each,
-    after a run-up that is extended, up to eight times, until the two windows agree within 3 %. To
+    after a run-up that is doubled, up to three times, until the two windows agree within 3 %. To
     find the limit, the runs are repeated with the commanded speed, the torque or the friction
     doubled, one at a time.
 

@@ -224,7 +224,7 @@ class Halt(Course):
 
 
 def drive(study: Campaign, courses: Sequence[Course]) -> None:
-    """Simulate courses; extend those that do not settle, up to eight times."""
+    """Simulate courses; double the time of those that do not settle, up to three times."""
     due = list(courses)
     if not due:
         return
