@@ -16,9 +16,10 @@ import numpy as np
 
 import crawler2d as c2d
 from crawler2d.parameters.scenario import Scenario
+from crawler2d.runs.dataset import UNITS
 from tests.fuzz.drawn_robots import Draw
 from tests.fuzz.drawn_scenes import drawn_scenario
-from tests.shared import ARRAYS, VARIANTS
+from tests.shared import VARIANTS
 
 DRAWN = 400
 
@@ -42,7 +43,7 @@ def digest(scenario: Scenario) -> dict[str, str]:
         moved.update(str(run.outcome).encode())
         tables = (run.events, run.edges, run.contacts)
         columns = [table[name] for table in tables for name in table]
-        for values in (*run.metrics.values(), *(getattr(run, name) for name in ARRAYS), *columns):
+        for values in (*run.metrics.values(), *(getattr(run, name) for name in UNITS), *columns):
             array = np.asarray(values)
             text = str(array.tolist()) if array.dtype.kind in "OUT" else None
             moved.update(array.tobytes() if text is None else text.encode())

@@ -54,14 +54,6 @@ def with_flippers(track: Track, arms: Track | None = None, ends: Any = "both") -
     return c2d.robots.engineer(flippers=flippers, track=track)
 
 
-ARRAYS = (
-    *("time", "position", "velocity", "chassis_angle", "angular_velocity", "commanded_speed"),
-    *("track_speed", "track_position", "slip_ratio", "tractive_effort", "drive_force"),
-    *("drive_speeds", "drive_positions", "drive_forces", "track_tension", "shoe_poses"),
-    *("flipper_angles", "flipper_torques"),
-)
-"""Attributes of a run with its history, each an array."""
-
 VARIANTS = {
     "belt-step": Scenario(ROBOT, c2d.terrains.step(0.05, edge_radius=0.01)),
     "belt-on-discs-step": Scenario(TRAPEZOID, c2d.terrains.step(0.05)),

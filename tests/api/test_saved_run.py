@@ -15,7 +15,8 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d.common.files import write_text
-from tests.shared import ARRAYS, ROBOT, VARIANTS, refused
+from crawler2d.runs.dataset import UNITS
+from tests.shared import ROBOT, VARIANTS, refused
 
 WHEELS = ROBOT.with_track(c2d.LineOfWheels(4, wheel_radius=0.0608))
 
@@ -86,7 +87,7 @@ def test_a_saved_stop_says_what_it_said(stopped: c2d.Run, tmp_path: Path) -> Non
 
 def test_a_loaded_run_does_what_a_run_does(stopped: c2d.Run, tmp_path: Path) -> None:
     again = reloaded(stopped, tmp_path)
-    for name in ARRAYS:
+    for name in UNITS:
         assert same(getattr(again, name), getattr(stopped, name))
         assert not getattr(again, name).flags.writeable
     assert same(again.poses, stopped.poses)

@@ -14,11 +14,11 @@ import crawler2d as c2d
 from crawler2d.common.arrays import Table
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.results.outcome import Outcome
+from crawler2d.runs.dataset import UNITS
 from tests.census import strata
 from tests.fuzz.account import SEED, Account, cases, interrupted
 from tests.fuzz.drawn_robots import Draw
 from tests.fuzz.drawn_scenes import STEPS, drawn_scenario
-from tests.shared import ARRAYS
 
 Say = Callable[[str], None]
 
@@ -49,7 +49,7 @@ def of_run(run: c2d.Run) -> list[str]:
     ]
     named += [*_columns("events", run.events), *_columns("edges", run.edges)]
     if run._trace:
-        named += [(name, getattr(run, name)) for name in ARRAYS]
+        named += [(name, getattr(run, name)) for name in UNITS]
         named += _columns("contacts", run.contacts)
     if run.diagnosis is not None and "nan" in str(run.diagnosis):
         named.append(("diagnosis", np.nan))
