@@ -418,12 +418,18 @@ impl Simulation {
             self.commands.speed = speed;
         }
         if let Some(flippers) = &self.scenario.robot.flippers {
-            let sight = DriverView {
-                time,
-                chassis_angle: self.state.angle,
-                touches: [End::Front, End::Rear].map(|end| self.flipper_touches(end)),
-            };
+            let sight = self.sight();
             self.commands.flippers = self.commands.driver.flippers(drive, flippers.angle, sight);
+        }
+    }
+
+    /// What the driver sees.
+    fn sight(&self) -> DriverView {
+        DriverView {
+            time: self.time,
+            chassis_angle: self.state.angle,
+            chassis_rate: self.state.angular_velocity,
+            touches: [End::Front, End::Rear].map(|end| self.flipper_touches(end)),
         }
     }
 
@@ -443,7 +449,7 @@ impl Simulation {
         let limits = &self.scenario.robot.drivetrain;
         let ramp = ramp_time(self.set_point, self.commands.speed, limits);
         let Commands { push, driver, .. } = &self.commands;
-        let ends = [push.end(), driver.next_look()].into_iter();
+        let ends = [push.end(), driver.next_change(drive, self.sight())].into_iter();
         let ends = ends.filter(|end| *end > self.time);
         next.chain(ends).fold(self.time + ramp, f64::min)
     }

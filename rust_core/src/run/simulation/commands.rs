@@ -7,7 +7,8 @@ use crate::run::step_length::SAME_TIME;
 use crate::scenario::{Climb, Drive, Drivetrain, Gait, Hold};
 use crate::units::Seconds;
 
-/// [s] A driver who climbs looks at intervals, so that what it decides does not depend on the length of steps.
+/// [s] A driver who climbs looks at multiples of this time. Steps end at those looks that may change its commands, so that
+/// these do not depend on the length of steps.
 const LOOK: Seconds = Seconds(0.01);
 /// [s] A climbing robot is past the edge once its nose has been down for longer, with its rear flippers on the ground.
 const ON_ITS_NOSE: Seconds = Seconds(1.0);
@@ -44,8 +45,9 @@ impl Commands {
 pub(crate) struct DriverView {
     /// [s] Time.
     pub time: f64,
-    /// [rad] Chassis angle, nose up > 0.
+    /// [rad], [rad/s] Chassis angle, nose up > 0, and its rate.
     pub chassis_angle: f64,
+    pub chassis_rate: f64,
     /// Whether the front and the rear flippers bear on something beyond their roots.
     pub touches: [bool; 2],
 }
@@ -58,8 +60,8 @@ pub(crate) struct Driver {
     /// Number of entries of the schedule of angles that count, if later ones do not.
     angles: Option<usize>,
     phase: Phase,
-    /// [s] When it looks again, and what the front and the rear flippers have touched since it last did.
-    next_look: f64,
+    /// [s] When it looks again, if it has looked, and what the front and the rear flippers have touched since it last did.
+    next_look: Option<f64>,
     touched: [bool; 2],
     /// [s] When the nose went below what counts as level, if it is below.
     nose_down_since: Option<f64>,
@@ -122,14 +124,38 @@ impl Driver {
         let known = |given: &Option<FlipperCommand>| given.is_none_or(|c| c.value().is_finite());
         let since = self.nose_down_since;
         self.entries <= entries
-            && (0.0..=time + LOOK.value()).contains(&self.next_look)
+            && (self.next_look).is_none_or(|look| (0.0..=look_after(time)).contains(&look))
             && self.by_hand.iter().all(known)
             && since.is_none_or(f64::is_finite)
     }
 
-    /// [s] When it looks next, if it looks at all.
-    pub(crate) fn next_look(&self) -> f64 {
-        self.next_look
+    /// [s] The first of the next two looks that may change its commands, as far as can be seen now; infinite if neither
+    /// does. Steps are shorter than two intervals, unless their length is given.
+    pub(crate) fn next_change(&self, drive: &Drive, sight: DriverView) -> f64 {
+        let (Some(Gait::Climb(climb)), Some(next)) = (&drive.gait, self.next_look) else {
+            return f64::INFINITY;
+        };
+        let mut touched = self.touched;
+        for time in [next, next + LOOK.value()] {
+            let mut driver = Self { touched, ..*self };
+            driver.see(sight.touches);
+            let changes = |angle: f64| {
+                let mut then = driver;
+                then.look(climb, time, angle);
+                then.phase != self.phase
+                    || then.nose_down_since.is_some() != self.nose_down_since.is_some()
+            };
+            // Twice as far, as it may turn faster by then.
+            let turned = sight.chassis_rate * (time - sight.time);
+            let mut angles = [0.0, 1.0, 2.0]
+                .into_iter()
+                .map(|times| sight.chassis_angle + times * turned);
+            if angles.any(changes) {
+                return time;
+            }
+            touched = [false; 2];
+        }
+        f64::INFINITY
     }
 
     /// Overrides the gait at one end.
@@ -157,13 +183,16 @@ impl Driver {
 
     /// Commands of the flippers during a climb.
     fn climb(&mut self, climb: &Climb, start: f64, sight: DriverView) -> [FlipperCommand; 2] {
-        for (touched, touches) in self.touched.iter_mut().zip(sight.touches) {
-            *touched |= touches;
-        }
-        if sight.time > self.next_look - SAME_TIME.value() {
-            self.look(climb, sight);
-            self.next_look = sight.time + LOOK.value();
+        self.see(sight.touches);
+        let past = |look: &f64| *look < sight.time + SAME_TIME.value();
+        while let Some(time) = self.next_look.or(Some(sight.time)).filter(past) {
+            let turned = sight.chassis_rate * (time - sight.time);
+            self.look(climb, time, sight.chassis_angle + turned);
+            self.next_look = Some(look_after(time));
             self.touched = [false; 2];
+            if time < sight.time - SAME_TIME.value() {
+                self.see(sight.touches);
+            }
         }
         let swept = FlipperCommand::Level(climb.sweep_angle - sight.chassis_angle);
         let pushed = FlipperCommand::Level(climb.push_angle + sight.chassis_angle);
@@ -175,14 +204,22 @@ impl Driver {
         }
     }
 
-    /// Chooses the phase of a climb. What opens and closes between two looks is no loss of contact.
-    fn look(&mut self, climb: &Climb, sight: DriverView) {
+    /// Remembers which flippers touch something.
+    fn see(&mut self, touches: [bool; 2]) {
+        for (touched, touches) in self.touched.iter_mut().zip(touches) {
+            *touched |= touches;
+        }
+    }
+
+    /// Chooses the phase of a climb at a time [s] and an angle of the chassis [rad]. What opens and closes between two looks
+    /// is no loss of contact.
+    fn look(&mut self, climb: &Climb, time: f64, chassis_angle: f64) {
         let [front, rear] = self.touched;
-        let raised = sight.chassis_angle > climb.level_angle;
-        let is_nose_down = sight.chassis_angle < -climb.level_angle;
-        self.nose_down_since = (self.nose_down_since.or(Some(sight.time))).filter(|_| is_nose_down);
+        let raised = chassis_angle > climb.level_angle;
+        let is_nose_down = chassis_angle < -climb.level_angle;
+        self.nose_down_since = self.nose_down_since.or(Some(time)).filter(|_| is_nose_down);
         let since = self.nose_down_since.unwrap_or(f64::INFINITY);
-        let is_on_its_nose = sight.time - since > ON_ITS_NOSE.value();
+        let is_on_its_nose = time - since > ON_ITS_NOSE.value();
         self.phase = match self.phase {
             Phase::Reach | Phase::Sweep if raised => Phase::Lift,
             Phase::Reach if front => Phase::Sweep,
@@ -192,6 +229,11 @@ impl Driver {
             same => same,
         };
     }
+}
+
+/// [s] The first look after a time [s].
+fn look_after(time: f64) -> f64 {
+    (((time + SAME_TIME.value()) / LOOK.value()).floor() + 1.0) * LOOK.value()
 }
 
 /// Whether two commands differ at most in the flippers.

@@ -59,24 +59,36 @@ const CLIMB: Climb = Climb {
     level_angle: 0.1,
 };
 
-/// Commands of a climbing driver who sees this for front and rear arms, which start at 0.3 rad.
-fn commands(driver: &mut Driver, sight: DriverView) -> [FlipperCommand; 2] {
-    let drive = Drive {
+fn climbing() -> Drive {
+    Drive {
         gait: Some(Gait::Climb(CLIMB)),
         speed: 0.4,
         schedule: None,
-    };
-    driver.flippers(&drive, 0.3, sight)
+    }
 }
 
-/// The last of these commands, after views that are a second apart.
+/// What a driver sees of a robot that does not turn.
+fn sight(time: f64, chassis_angle: f64, touches: [bool; 2]) -> DriverView {
+    DriverView {
+        time,
+        chassis_angle,
+        chassis_rate: 0.0,
+        touches,
+    }
+}
+
+/// Commands of a climbing driver who sees this for front and rear arms, which start at 0.3 rad.
+fn commands(driver: &mut Driver, sight: DriverView) -> [FlipperCommand; 2] {
+    driver.flippers(&climbing(), 0.3, sight)
+}
+
+/// The last of these commands, if each view lasts for half a second.
 fn after(views: &[(f64, [bool; 2])]) -> [FlipperCommand; 2] {
     let mut driver = Driver::default();
-    let views = (0_u32..).zip(views).map(|(time, view)| DriverView {
-        time: f64::from(time),
-        chassis_angle: view.0,
-        touches: view.1,
-    });
+    let seen = views.iter().flat_map(|view| [view; 50]);
+    let views = (0_u32..)
+        .zip(seen)
+        .map(|(look, (angle, touches))| sight(f64::from(look) * LOOK.value(), *angle, *touches));
     let last = views.map(|sight| commands(&mut driver, sight)).last();
     last.expect("it has seen something")
 }
@@ -114,14 +126,8 @@ fn rear_arms_push_a_raised_chassis_until_it_is_level_and_they_bear_nothing() {
 #[test]
 fn what_arms_have_touched_since_the_last_look_counts() {
     let mut driver = Driver::default();
-    let mut front_at = |time: f64, touches: bool| {
-        let sight = DriverView {
-            time,
-            chassis_angle: 0.0,
-            touches: [touches, false],
-        };
-        commands(&mut driver, sight)[0]
-    };
+    let mut front_at =
+        |time: f64, touches: bool| commands(&mut driver, sight(time, 0.0, [touches, false]))[0];
     let (reach, sweep) = (FlipperCommand::Angle(0.7), FlipperCommand::Level(-0.2));
     for (time, touches, command) in [
         (0.0, true, sweep),
@@ -138,7 +144,78 @@ fn what_arms_have_touched_since_the_last_look_counts() {
     }
 }
 
-/// On level ground they would keep its tail raised for ever. The times are whole seconds.
+/// A driver who has looked at the time 0 sees something at 2 and 4 ms, and looks again at 10 and 20 ms.
+#[test]
+#[allow(clippy::float_cmp)] // times are handed on
+fn only_a_look_that_may_change_a_command_ends_a_step() {
+    let (nothing, front, rear) = ([false; 2], [true, false], [false, true]);
+    let next = |start: (f64, [bool; 2]), first: [bool; 2], now: (f64, f64, [bool; 2])| {
+        let mut driver = Driver::default();
+        commands(&mut driver, sight(0.0, start.0, start.1));
+        commands(&mut driver, sight(0.002, start.0, first));
+        let now = DriverView {
+            chassis_rate: now.1,
+            ..sight(0.004, now.0, now.2)
+        };
+        commands(&mut driver, now);
+        driver.next_change(&climbing(), now)
+    };
+    let (first, second, none) = (0.01, 0.02, f64::INFINITY);
+    // It reaches, and touches something or is raised.
+    let reaches = |now: (f64, f64, [bool; 2])| next((0.0, nothing), nothing, now);
+    assert_eq!(reaches((0.0, 0.0, nothing)), none);
+    assert_eq!(reaches((0.0, 0.0, front)), first);
+    assert_eq!(reaches((0.11, 0.0, nothing)), first);
+    // It turns by 6 and 16 mrad until then, and perhaps by twice as much.
+    assert_eq!(reaches((0.09, 1.0, nothing)), first);
+    assert_eq!(reaches((0.07, 1.0, nothing)), second);
+    assert_eq!(reaches((0.067, 1.0, nothing)), none);
+    assert_eq!(reaches((0.09, -1.0, nothing)), none);
+    // It presses down, and goes on or loses what it pressed on, before or after it is seen again.
+    let presses = |before: [bool; 2], now: [bool; 2]| next((0.0, front), before, (0.0, 0.0, now));
+    assert_eq!(presses(front, front), none);
+    assert_eq!(presses(front, nothing), second);
+    assert_eq!(presses(nothing, nothing), first);
+    // It lifts, comes down, and its rear arms bear or not; or it falls onto its nose.
+    let lifts = |angle: f64, now: [bool; 2]| next((0.2, rear), now, (angle, 0.0, now));
+    assert_eq!(lifts(0.05, rear), none);
+    assert_eq!(lifts(0.05, nothing), first);
+    assert_eq!(lifts(-0.11, rear), first);
+    let hold = drive(&[], &[]);
+    let still = Driver::default().next_change(&hold, sight(0.0, 0.0, front));
+    assert_eq!(still, none);
+}
+
+/// At 25 ms it sees that the chassis has turned by 50 mrad since 0: at 10 ms it was not raised, at 20 ms it was.
+#[test]
+fn looks_that_a_step_passed_are_made_up_for_at_their_times() {
+    let mut driver = Driver::default();
+    commands(&mut driver, sight(0.0, 0.07, [false; 2]));
+    let now = DriverView {
+        chassis_rate: 2.0,
+        ..sight(0.025, 0.12, [true, false])
+    };
+    let [front, rear] = commands(&mut driver, now);
+    assert_eq!(front, FlipperCommand::Level(-0.2 - 0.12));
+    assert_eq!(rear, FlipperCommand::Level(-0.5 + 0.12));
+    assert_eq!(driver.next_look, Some(0.03));
+}
+
+#[test]
+#[allow(clippy::float_cmp)] // multiples of one number
+fn looks_are_at_multiples_of_their_interval() {
+    for (time, next) in [
+        (0.0, 1.0),
+        (0.013, 2.0),
+        (0.05, 6.0),
+        (0.05 - 0.9e-9, 6.0),
+        (3.1234, 313.0),
+    ] {
+        assert_eq!(look_after(time), next * LOOK.value(), "{time} s");
+    }
+}
+
+/// On level ground they would keep its tail raised for ever.
 #[test]
 fn rear_arms_that_have_stood_a_robot_on_its_nose_for_a_while_let_it_down() {
     let rear = [false, true];
@@ -264,10 +341,10 @@ fn only_what_commands_lead_to_is_taken_from_a_snapshot() {
     assert!(fits(|_| {}) && fits(|d| d.entries = 2) && fits(|d| d.nose_down_since = Some(0.3)));
     assert!(!fits(|d| d.entries = 3));
     assert!(!fits(|d| d.nose_down_since = Some(f64::NAN)));
-    assert!(fits(|d| d.next_look = 1.01));
+    assert!(fits(|d| d.next_look = Some(1.01)));
     for next_look in [1.02, -0.01, f64::NAN] {
         let driver = Driver {
-            next_look,
+            next_look: Some(next_look),
             ..Driver::default()
         };
         assert!(!driver.fits(&drive, 1.0), "{next_look} s");
