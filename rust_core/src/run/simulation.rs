@@ -436,9 +436,11 @@ impl Simulation {
     /// [s] When a command may change next, or the set-point reaches its command; infinite if neither does.
     pub(super) fn next_change(&self) -> f64 {
         let drive = &self.scenario.drive;
-        let of_flippers = match &drive.gait {
-            Some(Gait::Hold(hold)) => hold.schedule.as_deref(),
-            _ => None,
+        let Commands { push, driver, .. } = &self.commands;
+        let (of_flippers, look) = match &drive.gait {
+            None => (None, f64::INFINITY),
+            Some(Gait::Hold(hold)) => (hold.schedule.as_deref(), f64::INFINITY),
+            Some(Gait::Climb(climb)) => (None, driver.next_change(climb, self.sight())),
         };
         let entries = [drive.schedule.as_deref(), of_flippers];
         let next = |entries: &[[f64; 2]]| {
@@ -448,8 +450,7 @@ impl Simulation {
         let next = entries.into_iter().flatten().filter_map(next);
         let limits = &self.scenario.robot.drivetrain;
         let ramp = ramp_time(self.set_point, self.commands.speed, limits);
-        let Commands { push, driver, .. } = &self.commands;
-        let ends = [push.end(), driver.next_change(drive, self.sight())].into_iter();
+        let ends = [push.end(), look].into_iter();
         let ends = ends.filter(|end| *end > self.time);
         next.chain(ends).fold(self.time + ramp, f64::min)
     }

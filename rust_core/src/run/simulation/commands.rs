@@ -10,6 +10,8 @@ use crate::units::Seconds;
 /// [s] A driver who climbs looks at multiples of this time. Steps end at those looks that may change its commands, so that
 /// these do not depend on the length of steps.
 const LOOK: Seconds = Seconds(0.01);
+/// [s] No step lasts as long: looks that are longer overdue are not made up for.
+const LONGER_THAN_A_STEP: Seconds = Seconds(1.0);
 /// [s] A climbing robot is past the edge once its nose has been down for longer, with its rear flippers on the ground.
 const ON_ITS_NOSE: Seconds = Seconds(1.0);
 
@@ -131,8 +133,8 @@ impl Driver {
 
     /// [s] The first of the next two looks that may change its commands, as far as can be seen now; infinite if neither
     /// does. Steps are shorter than two intervals, unless their length is given.
-    pub(crate) fn next_change(&self, drive: &Drive, sight: DriverView) -> f64 {
-        let (Some(Gait::Climb(climb)), Some(next)) = (&drive.gait, self.next_look) else {
+    pub(crate) fn next_change(&self, climb: &Climb, sight: DriverView) -> f64 {
+        let Some(next) = self.next_look else {
             return f64::INFINITY;
         };
         let mut touched = self.touched;
@@ -184,8 +186,9 @@ impl Driver {
     /// Commands of the flippers during a climb.
     fn climb(&mut self, climb: &Climb, start: f64, sight: DriverView) -> [FlipperCommand; 2] {
         self.see(sight.touches);
-        let past = |look: &f64| *look < sight.time + SAME_TIME.value();
-        while let Some(time) = self.next_look.or(Some(sight.time)).filter(past) {
+        let recent = |look: &f64| *look > sight.time - LONGER_THAN_A_STEP.value();
+        let past = |look: &f64| *look <= sight.time + SAME_TIME.value();
+        while let Some(time) = (self.next_look.filter(recent).or(Some(sight.time))).filter(past) {
             let turned = sight.chassis_rate * (time - sight.time);
             self.look(climb, time, sight.chassis_angle + turned);
             self.next_look = Some(look_after(time));
@@ -233,7 +236,13 @@ impl Driver {
 
 /// [s] The first look after a time [s].
 fn look_after(time: f64) -> f64 {
-    (((time + SAME_TIME.value()) / LOOK.value()).floor() + 1.0) * LOOK.value()
+    let next = (((time + SAME_TIME.value()) / LOOK.value()).floor() + 1.0) * LOOK.value();
+    // After months of simulated time it may be rounded down to that time.
+    if next > time {
+        next
+    } else {
+        time + LOOK.value()
+    }
 }
 
 /// Whether two commands differ at most in the flippers.

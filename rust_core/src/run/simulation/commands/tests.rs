@@ -158,7 +158,7 @@ fn only_a_look_that_may_change_a_command_ends_a_step() {
             ..sight(0.004, now.0, now.2)
         };
         commands(&mut driver, now);
-        driver.next_change(&climbing(), now)
+        driver.next_change(&CLIMB, now)
     };
     let (first, second, none) = (0.01, 0.02, f64::INFINITY);
     // It reaches, and touches something or is raised.
@@ -181,9 +181,9 @@ fn only_a_look_that_may_change_a_command_ends_a_step() {
     assert_eq!(lifts(0.05, rear), none);
     assert_eq!(lifts(0.05, nothing), first);
     assert_eq!(lifts(-0.11, rear), first);
-    let hold = drive(&[], &[]);
-    let still = Driver::default().next_change(&hold, sight(0.0, 0.0, front));
-    assert_eq!(still, none);
+    // It has not looked yet.
+    let at_first = Driver::default().next_change(&CLIMB, sight(0.0, 0.0, front));
+    assert_eq!(at_first, none);
 }
 
 /// At 25 ms it sees that the chassis has turned by 50 mrad since 0: at 10 ms it was not raised, at 20 ms it was.
@@ -199,6 +199,18 @@ fn looks_that_a_step_passed_are_made_up_for_at_their_times() {
     assert_eq!(front, FlipperCommand::Level(-0.2 - 0.12));
     assert_eq!(rear, FlipperCommand::Level(-0.5 + 0.12));
     assert_eq!(driver.next_look, Some(0.03));
+}
+
+/// To make up for ten thousand million looks would take for ever.
+#[test]
+fn a_driver_whose_look_is_long_overdue_looks_once() {
+    let mut driver = Driver {
+        next_look: Some(0.0),
+        ..Driver::default()
+    };
+    let [front, _] = commands(&mut driver, sight(1e8, 0.0, [true, false]));
+    assert_eq!(front, FlipperCommand::Level(-0.2));
+    assert_eq!(driver.next_look, Some(look_after(1e8)));
 }
 
 #[test]
