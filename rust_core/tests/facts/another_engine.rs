@@ -22,7 +22,7 @@ fn the_engines_own_dynamics_agree_on_who_climbs_and_where_it_stops() {
         (9, 0.1),
     ]
     .into_iter()
-    .take(few_or_many(3, 7) as usize)
+    .take(few_or_many(2, 7) as usize)
     {
         let mut scenario = engineer();
         scenario.robot.drivetrain.torque_sharing = TorqueSharing::Wheel;
@@ -64,15 +64,21 @@ fn the_engines_path_goes_to_ours_as_its_step_goes_to_zero() {
         place(&scenario)
     };
     let ours = with_step(scenario.clone(), 1e-5);
-    let apart = [1.25e-4, 3e-5, 1e-5].map(|h| (with_step(in_rapier(&scenario), h) - ours).length());
+    let steps = [1.25e-4, 3e-5, 1e-5].into_iter();
+    let apart: Vec<f64> = steps
+        .take(few_or_many(2, 3) as usize)
+        .map(|h| (with_step(in_rapier(&scenario), h) - ours).length())
+        .collect();
     println!(
         "from ours at 10 us: ours by its accuracy {:.6} m, rapier {apart:.6?} m",
         (place(&scenario) - ours).length()
     );
     // 0.30 and 0.20 of the distance at 0.125 ms: it ends as far from ours as ours are from each other. The engine's motors
     // push on through an impact, for a step.
-    assert!(apart[1] < 0.35 * apart[0] && apart[2] < 0.25 * apart[0]);
-    assert!(apart[2] < 3e-4);
+    for (off, share) in apart[1..].iter().zip([0.35, 0.25]) {
+        assert!(*off < share * apart[0]);
+    }
+    assert!(apart[apart.len() - 1] < 3e-4);
 }
 
 /// How many of some starts, spread over a grouser pitch, end on top: ours, and the engine's.

@@ -189,7 +189,7 @@ fn imbalance(scenario: &Scenario) -> (f64, f64) {
     let mut simulation = after(scenario, 1.0);
     let weight = scenario.robot.mass * G;
     let (mut worst, mut sum) = (0.0_f64, Vector::ZERO);
-    while simulation.time() < 2.0 {
+    while simulation.time() < 1.5 {
         let before = simulation.momentum();
         simulation.step().expect("finite");
         let (fx, fy, _) = contact_sums(&simulation, 0.0, 0.0);

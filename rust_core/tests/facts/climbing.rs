@@ -90,7 +90,7 @@ fn belt_climbs_as_high_as_a_rigid_track_can_on_drawn_geometries() {
     println!("seed {seed}");
     let mut draw = Draw(seed);
     let mut cases = 0;
-    while cases < 10 {
+    while cases < few_or_many(5, 10) {
         let length = draw.between(0.25, 0.8);
         let radius = draw.between(0.1, 0.25) * length;
         let share = draw.between(0.4, 0.65);

@@ -130,7 +130,7 @@ fn stays_on(build: Build, first: usize, deepest: f64) {
                 let duration = match (soak, start % 10) {
                     (true, 0) => 60.0,
                     (true, _) => 8.0,
-                    (false, _) => 2.0,
+                    (false, _) => 1.2, // on the obstacle
                 };
                 let (outcome, seen) = outcome_of(trial, build(count), &mut draw, duration);
                 name = trial.name;

@@ -216,7 +216,7 @@ fn a_belt_climbs_as_high_as_a_rigid_trapezoid_can() {
             let off = [0.05, 0.02].map(|speed| {
                 scenario.drive.speed = speed;
                 scenario.duration = 3.0 / speed;
-                let found = bisect(0.7 * expected, 1.3 * expected, |height| {
+                let found = bisect(0.97 * expected, 1.03 * expected, |height| {
                     let mut scenario = scenario.clone();
                     scenario.terrain = step(height, AMPLE);
                     summary(&scenario).outcome == Outcome::Cleared
@@ -307,7 +307,8 @@ fn a_raised_nose_climbs_what_a_level_one_slips_at() {
 fn drawn_robots_on_discs_gain_no_more_than_their_motors_give() {
     let mut draw = Draw(53);
     let (mut most, mut chains) = (0.0_f64, 0);
-    for case in 0..60 {
+    let robots = few_or_many(30, 60);
+    for case in 0..robots {
         let scenario = drawn_on_discs(&mut draw);
         let account = follow(&scenario, scenario.duration);
         let share = account.gained / scale(&scenario, &account);
@@ -319,7 +320,7 @@ fn drawn_robots_on_discs_gain_no_more_than_their_motors_give() {
             scenario.to_json()
         );
     }
-    println!("60 robots, {chains} on chains, gained {most:.1e} at most");
+    println!("{robots} robots, {chains} on chains, gained {most:.1e} at most");
     assert!(chains > 2);
 }
 

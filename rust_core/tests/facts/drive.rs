@@ -214,8 +214,8 @@ fn no_robot_pulls_harder_than_its_grip_or_its_motors() {
             simulation.set_push(-push).expect("a push");
             let (mut farthest, mut hardest) = (0.0_f64, 0.0_f64);
             let start = simulation.reading().position.x;
-            while simulation.time() < 2.0 {
-                simulation.step_until(2.0).expect("finite");
+            while simulation.time() < 1.0 {
+                simulation.step_until(1.0).expect("finite");
                 farthest = farthest.max(simulation.reading().position.x - start);
                 hardest = simulation
                     .drive_forces()

@@ -184,7 +184,7 @@ fn robots_that_strike_the_ground_find_no_more_in_it_than_in_a_nanometre() {
         let (whole, upward_on_whole) = driven(&scenario, level(1));
         let approach = scenario.start.approach;
         let (mut spread, mut fastest) = (0.0_f64, upward_on_whole);
-        for nanometres in 1..=few_or_many(8, 12) {
+        for nanometres in 1..=few_or_many(5, 12) {
             scenario.start.approach = approach + 1e-9 * f64::from(nanometres);
             let (twin, upward) = driven(&scenario, level(1));
             (spread, fastest) = (spread.max(apart(&whole, &twin)), fastest.max(upward));

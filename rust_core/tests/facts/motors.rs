@@ -116,7 +116,7 @@ fn a_controller_that_was_at_its_limit_does_not_overshoot() {
 fn motors_with_curves_and_controllers_give_no_more_energy_than_their_work() {
     let mut draw = Draw(13);
     for (name, mut scenario) in models() {
-        for _ in 0..2 {
+        for _ in 0..few_or_many(1, 2) {
             let drivetrain = &mut scenario.robot.drivetrain;
             drivetrain.no_load_speed = Some(draw.between(0.1, 1.0));
             drivetrain.rotor_inertia = libm::exp(draw.between(-8.0, -2.0));

@@ -75,7 +75,8 @@ fn sliding_robot_accelerates_like_a_block_in_rapier() {
 #[test]
 fn one_motor_for_all_wheels_keeps_its_limit_in_rapier() {
     let placed = hybrid(Wheel::Round);
-    for track in [line(3), line(9), circumferential(24, Wheel::Round), placed] {
+    let tracks = [line(3), placed, line(9), circumferential(24, Wheel::Round)];
+    for track in tracks.into_iter().take(few_or_many(2, 4) as usize) {
         let mut scenario = on_wheels();
         scenario.robot.track = track;
         scenario.robot.drivetrain.max_torque = 3.0;
@@ -127,7 +128,7 @@ fn the_same_scenario_gives_the_same_bits_in_rapier() {
     let mut scenario = on_wheels();
     scenario.robot.track = line_of(3, paper_gear());
     scenario.terrain = step(0.08, 0.9);
-    let [one, other] = [(); 2].map(|()| after(&scenario, 2.0).reading());
+    let [one, other] = [(); 2].map(|()| after(&scenario, 1.0).reading());
     assert_eq!(one.position.x.to_bits(), other.position.x.to_bits());
     assert_eq!(one.chassis_angle.to_bits(), other.chassis_angle.to_bits());
 }

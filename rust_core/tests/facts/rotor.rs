@@ -72,7 +72,7 @@ fn simulation_motors(scenario: &crawler2d_core::Scenario) -> f64 {
 fn rotors_never_gain_energy() {
     let mut draw = Draw(11);
     for (name, mut scenario) in models() {
-        for _ in 0..2 {
+        for _ in 0..few_or_many(1, 2) {
             scenario.robot.drivetrain.rotor_inertia = libm::exp(draw.between(-6.0, 0.0));
             if let Some(flippers) = &mut scenario.robot.flippers {
                 flippers.rotor_inertia = libm::exp(draw.between(-6.0, 0.0));

@@ -10,7 +10,7 @@ fn simulation_goes_on_from_a_snapshot_with_the_same_bits() {
     let seed = 20_261_121;
     let mut draw = Draw(seed);
     let (mut runs, mut largest) = (0, 0);
-    while runs < few_or_many(50, 1000) {
+    while runs < few_or_many(25, 1000) {
         let Ok(checked) = ValidScenario::new(&drawn(&mut draw)) else {
             continue;
         };

@@ -132,6 +132,11 @@ impl Tally {
         verdicts.iter().filter(|v| v.passed).count() as u32
     }
 
+    /// How many runs passed: the judge's, the other's.
+    pub(crate) fn passes(&self) -> [u32; 2] {
+        [&self.judge, &self.other].map(|verdicts| Self::hits(verdicts))
+    }
+
     /// Probability that equal rates differ by as much.
     pub(crate) fn chance(&self) -> f64 {
         fisher(

@@ -20,6 +20,13 @@ impl Scene {
         self
     }
 
+    /// The same before a step of another height [m].
+    pub(crate) fn on_step(mut self, height: f64) -> Self {
+        self.name = format!("{}, on a step of {height} m", self.name);
+        self.scenario.terrain = step(height, 0.8);
+        self
+    }
+
     /// Run number `i`: speed by 10 % either way, any phase of the grousers, any approach of 0.1 m.
     pub(super) fn run(&self, i: u32) -> Scenario {
         let mut draw = Draw(self.seed.wrapping_mul(1_000_003).wrapping_add(u64::from(i)));
