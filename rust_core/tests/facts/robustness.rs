@@ -13,12 +13,12 @@ use crate::drawn::{drawn, drawn_on_discs};
 
 #[test]
 fn drawn_scenarios_run_finite_and_stay_out_of_the_ground() {
-    run_finite_and_stay_out(31, few_or_many(30, 2_000), drawn);
+    run_finite_and_stay_out(31, few_or_many(20, 2_000), drawn);
 }
 
 #[test]
 fn drawn_scenarios_on_discs_run_finite_and_stay_out_of_the_ground() {
-    run_finite_and_stay_out(32, few_or_many(15, 1_000), drawn_on_discs);
+    run_finite_and_stay_out(32, few_or_many(10, 1_000), drawn_on_discs);
 }
 
 fn run_finite_and_stay_out(seed: u64, cases: u32, drawn: fn(&mut Draw) -> Scenario) {

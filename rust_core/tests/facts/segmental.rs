@@ -219,7 +219,7 @@ fn a_chain_runs_as_far_as_its_sprocket_turns() {
     for count in COUNTS {
         let mut scenario = toothed(count);
         scenario.terrain = slope(0.0, 0.9);
-        let mut simulation = after(&scenario, 3.0);
+        let mut simulation = after(&scenario, 2.5);
         let pitch = Model::new(&scenario.robot).expect("it can be built").chains[0]
             .path
             .pitch;
@@ -227,7 +227,7 @@ fn a_chain_runs_as_far_as_its_sprocket_turns() {
             simulation.reading().track_position,
             simulation.chain().sprocket_slip,
         );
-        let span = f64::from(few_or_many(2, 10));
+        let span = f64::from(few_or_many(1, 10));
         advance(&mut simulation, span);
         let run = simulation.reading().track_position - start;
         let apart = (simulation.chain().sprocket_slip - slip).abs();
