@@ -4,6 +4,7 @@
 use serde_json::{Map, Value};
 
 use super::{Record, Run, ValidScenario, simulate};
+use crate::draw::cases;
 use crate::scenario::{Scenario, shared};
 use crate::units::with_units;
 
@@ -130,10 +131,10 @@ fn shorter(name: &str, rotor_inertia: f64) -> Scenario {
     scenario
 }
 
-/// No chains: their steps are not cut at a strike, and the elimination of a ring was not checked for this.
+/// In ordinary runs each of them on one scale, in turn. No chains: their steps are not cut at a strike, and the elimination of a ring was not checked for this.
 #[test]
 fn copies_on_other_scales_end_with_the_same_bits() {
-    for (name, rotor_inertia) in [
+    let robots = [
         ("engineer_belt_step", 0.0),
         ("engineer_grouser_belt_step", 0.04),
         ("engineer_flippers_step", 0.0),
@@ -141,10 +142,12 @@ fn copies_on_other_scales_end_with_the_same_bits() {
         ("judge_engineer5_step", 0.0),
         ("judge_gear3_step", 0.0),
         ("judge_gear3_bar", 0.04),
-    ] {
+    ];
+    for (place, (name, rotor_inertia)) in robots.into_iter().enumerate() {
         let original = shorter(name, rotor_inertia);
         let expected = run(&original, [1.0; 3]);
-        for scale in SCALES {
+        let scales = SCALES.into_iter().cycle().skip(place);
+        for scale in scales.take(cases(1, SCALES.len())) {
             let found = run(&copy(&original, scale), scale);
             assert_eq!(found.outcome, expected.outcome, "{name} {scale:?}");
             assert_eq!(

@@ -156,7 +156,7 @@ fn only_overlap(judge: &Judge) -> Option<Overlap> {
 fn no_penetration_is_missed_and_that_of_two_features_has_its_depth_and_normal() {
     const SEED: u64 = 20_270_115;
     let mut draw = Draw(SEED);
-    let count = cases(10_000, 1_000_000);
+    let count = cases(5_000, 1_000_000);
     let mut judged = 0;
     for number in 0..count {
         let mut scene = Scene::random(number, &mut draw);
@@ -213,7 +213,7 @@ fn a_part_leaves_the_ground_along_its_contacts() {
     const SEED: u64 = 20_270_116;
     const PREDICTION: f64 = 3e-3;
     let mut draw = Draw(SEED);
-    let count = cases(10_000, 1_000_000);
+    let count = cases(5_000, 1_000_000);
     let mut moved = 0;
     for number in 0..count {
         let mut scene = Scene::random(number, &mut draw);

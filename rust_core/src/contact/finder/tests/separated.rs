@@ -65,7 +65,7 @@ fn every_nearest_place_within_the_prediction_is_a_contact_and_none_is_nearer() {
     const SEED: u64 = 20_270_114;
     let mut draw = Draw(SEED);
     let (mut places, mut within) = (0, 0);
-    let count = cases(10_000, 1_000_000);
+    let count = cases(5_000, 1_000_000);
     for number in 0..count {
         let mut scene = Scene::random(number, &mut draw);
         let gap = draw.size(1e-6, 20e-3);
