@@ -105,7 +105,6 @@ REQUESTS: list[Callable[[], None]] = [
     many_histories,
     fine_histories,
     forty_large_grounds,
-    forty_grounds,
     many_threads,
     many_grousers,
     a_long_name,
@@ -115,6 +114,7 @@ REQUESTS: list[Callable[[], None]] = [
     a_chain,
     an_ordinary_run,
     an_ordinary_sweep,
+    forty_grounds,
     a_million_points,
 ]
 

@@ -64,11 +64,11 @@ SIZES = {
 }
 STRATA = {"tracks": strata.STRATA, "models": models.STRATA}
 TRACKS = [
-    pytest.param("tracks", 120, id="a few tracks"),
+    pytest.param("tracks", 200, id="a few tracks"),
     pytest.param("tracks", 1, id="all tracks", marks=pytest.mark.soak),
 ]
 MODELS = [
-    pytest.param("models", 200, id="a few models"),
+    pytest.param("models", 300, id="a few models"),
     pytest.param("models", 1, id="all models", marks=pytest.mark.soak),
 ]
 
