@@ -51,7 +51,7 @@ def check(number: int, name: str, folder: Path) -> bool:
     return True
 
 
-@pytest.mark.parametrize("many", [6, pytest.param(40, marks=pytest.mark.soak)])
+@pytest.mark.parametrize("many", [4, pytest.param(40, marks=pytest.mark.soak)])
 @pytest.mark.parametrize("name", SUFFIX)
 def test_any_wheels_that_a_file_gets_are_read_again(name: str, many: int, tmp_path: Path) -> None:
     made = sum(check(number, name, tmp_path) for number in range(many))

@@ -24,6 +24,12 @@ ROBOTS = {
         ROBOT, outline=dataclasses.replace(ROBOT.outline, front_radius=0.05)
     ),
 }
+# Some scenarios have the same robot on other ground.
+ROBOTS = {
+    name: robot
+    for number, (name, robot) in enumerate(ROBOTS.items())
+    if robot not in list(ROBOTS.values())[:number]
+}
 
 
 def words(ax: Any) -> list[Text]:

@@ -6,6 +6,7 @@ import shutil
 import sys
 import tempfile
 import time
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -102,6 +103,12 @@ def expand(path: Path, **how: Any) -> tuple[str, list[ReadingWarning]]:
     return text.decode(), warned
 
 
+@cache
+def expanded(name: str) -> tuple[str, list[ReadingWarning]]:
+    """Expand the public file of a key; some take a second."""
+    return expand(keys()[name].file)
+
+
 def copied(key: Key, to: Path) -> Path:
     """Copy a tree outside of any repository; return the main file."""
     shutil.copytree(key.folder, to / "clone")
@@ -122,10 +129,17 @@ def check(name: str, text: str, warned: list[ReadingWarning]) -> None:
 
 @pytest.mark.parametrize("name", WARNED)
 def test_a_public_tree_expands_with_warnings_of_what_is_missing(name: str) -> None:
-    check(name, *expand(keys()[name].file))
+    check(name, *expanded(name))
 
 
-@pytest.mark.parametrize("name", ["marv", "tank", "sekirei2020_gazebo", "tractor"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "marv",
+        "sekirei2020_gazebo",
+        *(pytest.param(each, marks=pytest.mark.soak) for each in ("tank", "tractor")),
+    ],
+)
 def test_a_public_tree_expands_as_well_outside_of_a_repository(name: str, tmp_path: Path) -> None:
     path = copied(keys()[name], tmp_path)
     assert not any((folder / ".git").exists() for folder in path.parents)
@@ -145,7 +159,7 @@ def test_every_public_main_file_of_xacro_is_tried() -> None:
     ],
 )
 def test_an_expanded_model_has_the_mass_of_its_key(name: str, key: str) -> None:
-    text, _ = expand(keys()[name].file)
+    text, _ = expanded(name)
     masses = [each for each in parse_xml(text.encode(), name).within() if each.tag == "mass"]
     total = sum(float(mass.attribute("value")) for mass in masses)
     assert total == pytest.approx(keys()[key].figures["mass"], abs=1e-6)
@@ -153,7 +167,7 @@ def test_an_expanded_model_has_the_mass_of_its_key(name: str, key: str) -> None:
 
 def test_marv_is_expanded_with_the_settings_of_its_repository() -> None:
     key = keys()["marv"]
-    found, _ = expand(key.file)
+    found, _ = expanded("marv")
     given, warned = expand(key.file, arguments=key.arguments, packages=key.packages)
     assert found == given
     assert not warned

@@ -12,7 +12,8 @@ from crawler2d.reading import parsing
 from tests.kept import refusing
 from tests.reading.carts import FILES, SAID, WHEELS, XACRO, quietly, read, urdf
 
-pytestmark = pytest.mark.usefixtures("children_of_its_own")
+own_child = pytest.mark.usefixtures("children_of_its_own")
+"""For tests of the process itself; a fork of a standing one has the same limits."""
 
 BOMB = """<!DOCTYPE robot [<!ENTITY a "aaaaaaaaaa">
 <!ENTITY b "&a;&a;&a;&a;&a;&a;&a;&a;&a;&a;">]>
@@ -205,6 +206,7 @@ def test_a_line_is_that_of_an_editor_whatever_ends_lines_within_it(tmp_path: Pat
     assert refused(tmp_path, text, "must be a finite number").path.startswith("cart.urdf:3:")
 
 
+@own_child
 def test_a_child_that_does_not_answer_in_time_is_given_up(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -213,6 +215,7 @@ def test_a_child_that_does_not_answer_in_time_is_given_up(
     assert (error.path, error.value) == ("cart.xacro", "no answer")
 
 
+@own_child
 def test_xacro_that_takes_all_time_or_memory_is_ended(tmp_path: Path) -> None:
     pytest.importorskip("xacrodoc")
     loop = "${max([a*b for a in range(10**5) for b in range(10**5)])}"
@@ -267,6 +270,7 @@ def test_a_thousand_files_of_settings_cost_little(tmp_path: Path) -> None:
         read(tmp_path, text, "cart.xacro")
 
 
+@own_child
 def test_a_folder_of_the_model_is_not_on_the_path_of_the_child(tmp_path: Path) -> None:
     pytest.importorskip("mujoco")
     (tmp_path / "mujoco.py").write_text("raise SystemExit('imported what lies beside a model')")

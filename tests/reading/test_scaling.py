@@ -13,7 +13,10 @@ from tests.kept import refusing
 from tests.reading.carts import FILES, ROBOTS, SAID, pair, quietly, read, urdf
 
 
-@pytest.mark.parametrize("name", ["cart.sdf", "cart.urdf", "absolem.sdf", "marv.sdf"])
+@pytest.mark.parametrize(
+    "name",
+    ["cart.sdf", "cart.urdf", "absolem.sdf", pytest.param("marv.sdf", marks=pytest.mark.soak)],
+)
 def test_a_file_in_tenths_is_the_robot_of_the_file_in_metres(tmp_path: Path, name: str) -> None:
     path = next(folder / name for folder in (FILES, ROBOTS) if (folder / name).is_file())
     usual = quietly(path)

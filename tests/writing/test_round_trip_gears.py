@@ -147,13 +147,13 @@ def check(numbers: range, name: str, folder: Path, *, is_tapered: bool = False) 
 
 @pytest.mark.parametrize("name", ["sdf", "urdf"])
 def test_gear_wheels_are_read_as_they_were_written(name: str, tmp_path: Path) -> None:
-    check(range(3), name, tmp_path)
+    check(range(2), name, tmp_path)
 
 
 @pytest.mark.parametrize("is_tapered", [False, True])
 def test_gear_wheels_are_read_from_mjcf(is_tapered: bool, tmp_path: Path) -> None:
     pytest.importorskip("mujoco")
-    check(range(3), "mjcf", tmp_path, is_tapered=is_tapered)
+    check(range(2), "mjcf", tmp_path, is_tapered=is_tapered)
 
 
 @pytest.mark.soak

@@ -291,7 +291,9 @@ def audit(
     >>> robot = c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(4, wheel_radius=0.0608))
     >>> robot = robot.without_rotors()
     >>> step = {"step of 75 mm": c2d.terrains.step(0.075)}
-    >>> found = audit(robot, step, unknown={}, repeats=20, quick=True, progress=False)
+    >>> found = audit(
+    ...     robot, step, unknown={}, repeats=20, quick=True, duration=6.0, progress=False
+    ... )
     >>> found.seizes, found.verdicts[0].jam_wheels, found.verdicts[0].jam_counts
     (True, '1-2', (9, 9))
     >>> found.repairs[0].description, found.repairs[0].confirmed

@@ -127,14 +127,14 @@ def audit_policy(
     ...     rates = [1.2 - 3.0 * (pitch + front), 0.9 - 3.0 * (2.0 * pitch + rear)]
     ...     return np.stack([np.ones(len(seen)), *rates], axis=1)
     >>> robots = {"belt": {}, "public wheels": c2d.robots.absolem(track="public")}
-    >>> steps = {height: c2d.terrains.step(height) for height in (0.2, 0.25)}
+    >>> steps = {0.25: c2d.terrains.step(0.25)}
     >>> found = audit_policy(
-    ...     lift, FlipperEnv(), models=robots, obstacles=steps, repeats=10, progress=False
+    ...     lift, FlipperEnv(), models=robots, obstacles=steps, repeats=5, progress=False
     ... )
     >>> found.rate.sel(obstacle=0.25, driver="baseline").values.tolist()
-    [1.0, 0.1]
+    [1.0, 0.0]
     >>> found.rate.sel(obstacle=0.25, driver="policy").values.tolist()
-    [0.0, 0.5]
+    [0.0, 0.4]
     >>> found.attrs["summary"]
     'no gain over the baseline on belt that is certain'
     """

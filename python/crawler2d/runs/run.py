@@ -405,7 +405,7 @@ class Run(ShownRun):
         --------
         >>> import crawler2d as c2d
         >>> robot = c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(4))
-        >>> run = c2d.simulate(robot.without_rotors(), c2d.terrains.step(0.1))
+        >>> run = c2d.simulate(robot.without_rotors(), c2d.terrains.step(0.1), duration=4.0)
         >>> check = run.cross_check()
         >>> check.same_outcome, all(balance.holds for balance in check.balances)
         (True, True)
