@@ -300,7 +300,8 @@ def test_a_figure_draws_one_model_or_its_boundaries() -> None:
     from matplotlib import pyplot as plt  # noqa: PLC0415
 
     models = {"belt": c2d.BeltTrack(), "on ice": {"robot.mass": 20.0}}
-    found = found_of(models=models)
+    few = c2d.Until(threshold=0.5, min_runs=5, max_runs=5)
+    found = found_of(models=models, until=few)
     with pytest.raises(c2d.ScenarioError, match="must have one model"):
         found.plot()
     with pytest.raises(c2d.ScenarioError, match="show"):
