@@ -115,13 +115,10 @@ fn the_ground_bears_its_weight_on_the_level_and_on_a_ramp() {
         let before = simulation.momentum();
         let mut sum = [0.0; 2];
         while simulation.time() < 2.0 {
-            let start = simulation.time();
             simulation.step_until(2.0).expect("finite");
             let (fx, fy, _) = contact_sums(&simulation, 0.0, 0.0);
-            // None where the rest of the way to a change of command is rounding.
-            let dt = simulation.time() - start;
-            sum[0] += fx * dt;
-            sum[1] += fy * dt;
+            sum[0] += fx * simulation.last_step();
+            sum[1] += fy * simulation.last_step();
         }
         // In one second.
         let gained = simulation.momentum() - before;

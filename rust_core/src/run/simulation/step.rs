@@ -51,7 +51,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// [s] Length of the last step.
+    /// [s] Length of the last step; 0 if the time to its end was only rounding.
     pub fn last_step(&self) -> f64 {
         self.last.length
     }
@@ -65,7 +65,7 @@ impl Simulation {
         let limit = limit.min(self.next_change());
         if limit - self.time < SAME_TIME.value() {
             // The rest is rounding.
-            self.time = limit;
+            (self.time, self.last.length) = (limit, 0.0);
             return Ok(());
         }
         let h = self.step_control.next(self.step_rule, self.time, limit);
